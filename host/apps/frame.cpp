@@ -1,0 +1,57 @@
+#include "apps/frame.h"
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+#include <glm/vec3.hpp>
+
+namespace coppice {
+
+namespace {
+
+vec3 flush_to_zero(vec3 v) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::fpclassify(v[axis]) == FP_SUBNORMAL || v[axis] == 0) v[axis] = 0;
+  }
+  return v;
+}
+
+}  // namespace
+
+SceneArrays scene_arrays(const Scene& scene) {
+  SceneArrays arrays;
+  std::vector<vec3> positions;
+  positions.reserve(scene.positions.size());
+  for (const vec3& position : scene.positions) positions.push_back(flush_to_zero(position));
+  arrays.triangles.reserve(scene.indices.size());
+  for (const uvec3& corner : scene.indices) {
+    arrays.triangles.push_back({positions[corner.x], positions[corner.y], positions[corner.z]});
+  }
+  arrays.material_index = scene.material_index;
+  for (const Material& material : scene.materials) {
+    arrays.materials.push_back({material.emission + material.ambient * scene.ambient_light,
+                                material.diffuse * scene.light.radiance});
+  }
+  arrays.lighting = {scene.light.direction, 0, vec3(0.80f, 0.87f, 0.94f), 0, vec3(0.24f, 0.45f, 0.78f), 0};
+  return arrays;
+}
+
+Film make_film(const Camera& camera, std::uint32_t width, std::uint32_t height, std::uint32_t samples) {
+  using dvec3 = glm::dvec3;
+  const dvec3 forward = glm::normalize(dvec3(camera.target) - dvec3(camera.position));
+  const dvec3 right = glm::normalize(glm::cross(forward, dvec3(camera.up)));
+  const dvec3 down = glm::cross(forward, right);
+  const double half_height = std::tan(glm::radians(double{camera.vertical_fov_degrees}) / 2);
+  const double half_width = half_height * width / height;
+  Film film{};
+  film.position = camera.position;
+  film.width = width;
+  film.height = height;
+  film.samples = samples;
+  film.corner = forward - right * half_width - down * half_height;
+  film.right = right * (2 * half_width / width);
+  film.down = down * (2 * half_height / height);
+  return film;
+}
+
+}  // namespace coppice

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include "pipeline/trace.h"
+#include "scene/scene.h"
+
+namespace coppice {
+
+// A scene as the stages take it.
+struct SceneArrays {
+  std::vector<Triangle> triangles;  // denormal coordinates and -0 as +0: what every device computes alike
+  std::vector<uint> material_index;
+  std::vector<SurfaceMaterial> materials;
+  Lighting lighting;
+};
+
+SceneArrays scene_arrays(const Scene& scene);
+
+Film make_film(const Camera& camera, std::uint32_t width, std::uint32_t height, std::uint32_t samples);
+
+// Uploads all that a build and a trace read, through any executor.
+template <class Executor>
+void upload_frame(Executor& executor, const BuildPlan& build, const TracePlan& trace, const SceneArrays& scene,
+                  const Film& film) {
+  const auto thresholds = srgb_thresholds();
+  executor.upload(build.triangles, std::span<const Triangle>(scene.triangles));
+  executor.upload(trace.material_index, std::span<const uint>(scene.material_index));
+  executor.upload(trace.materials, std::span<const SurfaceMaterial>(scene.materials));
+  executor.upload(trace.lighting, std::span<const Lighting>(&scene.lighting, 1));
+  executor.upload(trace.film, std::span<const Film>(&film, 1));
+  executor.upload(trace.srgb_thresholds, std::span<const uint>(thresholds));
+}
+
+}  // namespace coppice

@@ -1,0 +1,104 @@
+#include "gpu/arena.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "gpu/arena_blocks.h"
+
+namespace coppice {
+
+namespace {
+
+constexpr std::uint64_t staging_bytes = std::uint64_t{16} << 20;
+
+Buffer make_buffer(VulkanContext& context, std::uint64_t bytes, vk::BufferUsageFlags usage, vk::MemoryPropertyFlags flags) {
+  Buffer result;
+  try {
+    result.buffer = vk::raii::Buffer(context.device, {{}, bytes, usage, vk::SharingMode::eExclusive});
+    const auto needs = result.buffer.getMemoryRequirements();
+    const bool addressed = bool(usage & vk::BufferUsageFlagBits::eShaderDeviceAddress);
+    const vk::MemoryAllocateFlagsInfo address_flag(addressed ? vk::MemoryAllocateFlagBits::eDeviceAddress
+                                                             : vk::MemoryAllocateFlags());
+    result.memory = vk::raii::DeviceMemory(
+        context.device, {needs.size, context.memory_type(needs.memoryTypeBits, flags), &address_flag});
+    result.buffer.bindMemory(*result.memory, 0);
+    if (addressed) result.address = context.device.getBufferAddress({*result.buffer});
+    if (flags & vk::MemoryPropertyFlagBits::eHostVisible) {
+      result.mapped = static_cast<std::byte*>(result.memory.mapMemory(0, VK_WHOLE_SIZE));
+    }
+  } catch (const vk::OutOfDeviceMemoryError&) {
+    throw DeviceError("out of memory: the device has no " + std::to_string(bytes) + " bytes left");
+  } catch (const vk::OutOfHostMemoryError&) {
+    throw DeviceError("out of memory: the host has no " + std::to_string(bytes) + " bytes left for the device");
+  }
+  return result;
+}
+
+}  // namespace
+
+void wait_for(const VulkanContext& context, const vk::raii::Fence& fence, double limit_seconds) {
+  const auto limit_ns = static_cast<std::uint64_t>(limit_seconds * 1e9);
+  if (context.device.waitForFences(*fence, true, limit_ns) == vk::Result::eTimeout) {
+    throw DeviceError("the device did not finish within " + std::to_string(static_cast<int>(limit_seconds)) + " s");
+  }
+}
+
+Arena::Arena(Device& device, const std::vector<std::uint64_t>& block_bytes) : blocks_(std::make_unique<Blocks>()) {
+  using Usage = vk::BufferUsageFlagBits;
+  using Memory = vk::MemoryPropertyFlagBits;
+  VulkanContext& context = device.context();
+  blocks_->context = &context;
+  const auto host = Memory::eHostVisible | Memory::eHostCoherent;
+  const bool shared = context.properties.shared_memory;
+  for (const std::uint64_t bytes : block_bytes) {
+    const auto usage = Usage::eStorageBuffer | Usage::eShaderDeviceAddress | Usage::eIndirectBuffer |
+                       Usage::eTransferSrc | Usage::eTransferDst;
+    blocks_->list.push_back(make_buffer(context, bytes, usage, shared ? host : Memory::eDeviceLocal));
+    if (shared) std::memset(blocks_->list.back().mapped, 0, bytes);
+  }
+  if (shared) return;
+  blocks_->staging = make_buffer(context, staging_bytes, Usage::eTransferSrc | Usage::eTransferDst, host);
+  run_commands(context, [&](const vk::raii::CommandBuffer& commands) {
+    for (const Buffer& block : blocks_->list) commands.fillBuffer(*block.buffer, 0, VK_WHOLE_SIZE, 0);
+  });
+}
+
+Arena::~Arena() = default;
+
+std::vector<std::uint64_t> Arena::block_addresses() const {
+  std::vector<std::uint64_t> addresses;
+  for (const Buffer& block : blocks_->list) addresses.push_back(block.address);
+  return addresses;
+}
+
+void Arena::upload(std::uint32_t block, std::uint64_t offset, std::span<const std::byte> bytes) {
+  const Buffer& target = blocks_->list.at(block);
+  if (target.mapped) {
+    std::ranges::copy(bytes, target.mapped + offset);
+    return;
+  }
+  for (std::uint64_t done = 0; done < bytes.size(); done += staging_bytes) {
+    const std::uint64_t piece = std::min<std::uint64_t>(staging_bytes, bytes.size() - done);
+    std::memcpy(blocks_->staging.mapped, bytes.data() + done, piece);
+    run_commands(*blocks_->context, [&](const vk::raii::CommandBuffer& commands) {
+      commands.copyBuffer(*blocks_->staging.buffer, *target.buffer, vk::BufferCopy(0, offset + done, piece));
+    });
+  }
+}
+
+void Arena::download(std::uint32_t block, std::uint64_t offset, std::span<std::byte> bytes) const {
+  const Buffer& source = blocks_->list.at(block);
+  if (source.mapped) {
+    std::copy_n(source.mapped + offset, bytes.size(), bytes.data());
+    return;
+  }
+  for (std::uint64_t done = 0; done < bytes.size(); done += staging_bytes) {
+    const std::uint64_t piece = std::min<std::uint64_t>(staging_bytes, bytes.size() - done);
+    run_commands(*blocks_->context, [&](const vk::raii::CommandBuffer& commands) {
+      commands.copyBuffer(*source.buffer, *blocks_->staging.buffer, vk::BufferCopy(offset + done, 0, piece));
+    });
+    std::memcpy(bytes.data() + done, blocks_->staging.mapped, piece);
+  }
+}
+
+}  // namespace coppice

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "gpu/device.h"
+
+namespace coppice {
+
+// Blocks of device memory with an address, zero at the start. Copies from and to them are complete when they return.
+class Arena {
+ public:
+  // Throws DeviceError, naming the size, when the device's memory is used up.
+  Arena(Device& device, const std::vector<std::uint64_t>& block_bytes);
+  ~Arena();
+
+  std::vector<std::uint64_t> block_addresses() const;
+
+  void upload(std::uint32_t block, std::uint64_t offset, std::span<const std::byte> bytes);
+  void download(std::uint32_t block, std::uint64_t offset, std::span<std::byte> bytes) const;
+
+  struct Blocks;
+  const Blocks& blocks() const { return *blocks_; }
+
+ private:
+  std::unique_ptr<Blocks> blocks_;
+};
+
+}  // namespace coppice

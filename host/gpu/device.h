@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace coppice {
+
+// Whatever goes wrong with a device, in one line.
+struct DeviceError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+enum class DeviceType { discrete, integrated, virtual_gpu, cpu, other };
+const char* to_string(DeviceType type);
+
+struct DeviceListing {
+  std::uint32_t index;
+  std::string name;
+  std::string driver;  // name and version, as the driver says them
+  DeviceType type;
+  std::string unsuitable_because;  // empty for a device that can be used
+};
+
+// All devices of the machine, suitable or not, in the loader's order. Empty without a Vulkan loader or driver.
+std::vector<DeviceListing> list_devices();
+
+struct DeviceOptions {
+  std::string select;         // part of a name or an index; empty: discrete before integrated before CPU
+  bool validate = false;      // validation layers, synchronization validation included
+  bool force_staging = false;  // copy through staging buffers even where memory is shared (for tests)
+};
+
+struct DeviceProperties {
+  std::string name;
+  std::string driver;
+  DeviceType type;
+  std::uint32_t subgroup_size;
+  std::uint64_t max_block_bytes;  // largest single allocation
+  double timestamp_period_ns;     // 0: no timestamps
+  bool shared_memory;             // the host maps the device's memory
+  // Old lavapipe silently ends the loops of an invocation after 65,535 turns in all; 0: no limit known.
+  std::uint32_t loop_turn_limit;
+};
+
+struct VulkanContext;  // gpu/vulkan_context.h, only for this folder
+
+class Device {
+ public:
+  // Throws DeviceError if there is no such device, or it lacks what the kernels need.
+  explicit Device(const DeviceOptions& options = {});
+  ~Device();
+  Device(Device&&) noexcept;
+
+  const DeviceProperties& properties() const;
+
+  // What the validation layers said since the last call.
+  std::vector<std::string> take_validation_messages();
+
+  VulkanContext& context() { return *context_; }
+
+ private:
+  std::unique_ptr<VulkanContext> context_;
+};
+
+}  // namespace coppice

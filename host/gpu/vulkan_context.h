@@ -1,0 +1,41 @@
+#pragma once
+
+#include <map>
+#include <mutex>
+#include <vector>
+#include <vulkan/vulkan_raii.hpp>
+
+#include "gpu/device.h"
+
+namespace coppice {
+
+struct PipelineKey {
+  const std::uint32_t* kernel;
+  std::vector<std::uint32_t> specialization;
+  auto operator<=>(const PipelineKey&) const = default;
+};
+
+// The Vulkan objects behind a Device. Members are destroyed in reverse order.
+struct VulkanContext {
+  DeviceProperties properties;
+  std::mutex message_mutex;
+  std::vector<std::string> messages;
+
+  vk::raii::Context loader;
+  vk::raii::Instance instance{nullptr};
+  vk::raii::DebugUtilsMessengerEXT messenger{nullptr};
+  vk::raii::PhysicalDevice physical{nullptr};
+  vk::raii::Device device{nullptr};
+  vk::raii::Queue queue{nullptr};
+  std::uint32_t queue_family = 0;
+  vk::raii::CommandPool command_pool{nullptr};
+  vk::raii::PipelineLayout pipeline_layout{nullptr};  // 128 bytes of push constants, no descriptors
+  std::map<PipelineKey, vk::raii::Pipeline> pipelines;
+  bool labels = false;  // debug labels can be recorded
+  bool force_staging = false;
+
+  // Index of a memory type among `allowed` with all of `flags`; throws DeviceError if there is none.
+  std::uint32_t memory_type(std::uint32_t allowed, vk::MemoryPropertyFlags flags) const;
+};
+
+}  // namespace coppice

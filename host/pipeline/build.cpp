@@ -1,0 +1,99 @@
+#include "pipeline/build.h"
+
+#include <cstddef>
+
+#include "stages/stages.h"
+
+namespace coppice {
+
+namespace {
+
+uvec3 tiles(std::uint32_t count, std::uint32_t tile, std::uint32_t rows = 1) {
+  return {count / tile + (count % tile != 0), rows, 1};
+}
+
+void append_bounds(Chain& chain, const BuildPlan& plan) {
+  chain.run(stages::primitive_bounds,
+            {chain.at(plan.triangles), chain.at(plan.boxes), chain.at(plan.state), plan.triangle_count, 0},
+            tiles(plan.triangle_count, PRIMITIVE_BOUNDS_TILE));
+}
+
+void append_sort(Chain& chain, const BuildPlan& plan) {
+  const std::uint32_t n = plan.triangle_count, key_words = plan.options.morton_bits / 30;
+  const std::uint32_t passes = key_words * SORT_PASSES_PER_WORD;
+  chain.run(stages::morton_codes,
+            {chain.at(plan.boxes), chain.at(plan.state), chain.at(plan.keys[0]), chain.at(plan.values[0]), n, key_words},
+            tiles(n, MORTON_GROUP));
+  chain.run(stages::sort_histogram, {chain.at(plan.keys[0]), chain.at(plan.histogram), n, key_words},
+            tiles(n, SORT_HISTOGRAM_TILE, key_words));
+  chain.run(stages::sort_digit_scan, {chain.at(plan.histogram), passes, 0}, {passes, 1, 1});
+  const uvec3 pass_groups = tiles(n, SORT_TILE);
+  for (std::uint32_t pass = 0; pass < passes; ++pass) {
+    const int in = pass % 2, out = 1 - in;
+    const auto status = chain.at(plan.sort_status, std::uint64_t{pass} * pass_groups.x * SORT_DIGITS);
+    const SortPassArgs args{chain.at(plan.keys[in]),
+                            chain.at(plan.values[in]),
+                            chain.at(plan.keys[out]),
+                            chain.at(plan.values[out]),
+                            chain.at(plan.histogram, pass * SORT_DIGITS),
+                            status,
+                            chain.at(plan.sort_tickets, pass),
+                            chain.at(plan.state),
+                            n,
+                            key_words,
+                            pass,
+                            plan.options.lookback};
+    if (!plan.options.lookback) {
+      chain.run(stages::sort_tile_counts, args, pass_groups);
+      chain.run(stages::sort_tile_scan, {status, pass_groups.x, 0}, {1, 1, 1});
+    }
+    chain.run(stages::sort_pass, args, pass_groups, {plan.options.lookback_turns});
+  }
+}
+
+void append_round(Chain& chain, const BuildPlan& plan, std::uint32_t round) {
+  const auto in = chain.at(plan.clusters[round % 2]), out = chain.at(plan.clusters[(round + 1) % 2]);
+  const auto nearest = chain.at(plan.nearest), status = chain.at(plan.round_status);
+  const auto groups = [&](std::size_t member) {
+    return Place{plan.rounds.place.block, plan.rounds.place.offset + round * sizeof(PlocRound) + member};
+  };
+  chain.run_indirect(stages::ploc_nearest,
+                     {in, nearest, status, chain.at(plan.state), chain.at(plan.rounds), round, plan.options.radius},
+                     groups(offsetof(PlocRound, nearest_groups)));
+  const PlocMergeArgs merge{in, out, nearest, status, chain.at(plan.nodes), chain.at(plan.state), chain.at(plan.rounds),
+                            round, plan.options.lookback};
+  const Place merge_groups = groups(offsetof(PlocRound, merge_groups));
+  if (!plan.options.lookback) {
+    chain.run_indirect(stages::ploc_tile_counts, merge, merge_groups);
+    chain.run_indirect(stages::ploc_tile_scan, {status, chain.at(plan.rounds), round, 0},
+                       groups(offsetof(PlocRound, tile_scan_groups)));
+  }
+  chain.run_indirect(stages::ploc_merge, merge, merge_groups, {plan.options.lookback_turns});
+}
+
+void append_ploc(Chain& chain, const BuildPlan& plan) {
+  chain.run(stages::ploc_leaves,
+            {chain.at(plan.boxes), chain.at(plan.values[0]), chain.at(plan.clusters[0]), chain.at(plan.state),
+             chain.at(plan.rounds), plan.triangle_count, 0},
+            tiles(plan.triangle_count, PLOC_LEAVES_GROUP));
+  for (std::uint32_t round = 0; round < plan.recorded_rounds; ++round) append_round(chain, plan, round);
+  chain.run(stages::ploc_finish,
+            {chain.at(plan.clusters[0]), chain.at(plan.clusters[1]), chain.at(plan.nodes), chain.at(plan.state),
+             chain.at(plan.rounds), plan.options.radius, plan.rounds_bound},
+            {1, 1, 1});
+}
+
+}  // namespace
+
+void append_build(Chain& chain, const BuildPlan& plan) {
+  chain.clear(plan.state);
+  chain.clear(plan.rounds);
+  chain.clear(plan.histogram);
+  chain.clear(plan.sort_status);
+  chain.clear(plan.sort_tickets);
+  append_bounds(chain, plan);
+  append_sort(chain, plan);
+  append_ploc(chain, plan);
+}
+
+}  // namespace coppice

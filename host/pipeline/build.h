@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+
+#include "interface/ploc.h"
+#include "interface/types.h"
+#include "stages/chain.h"
+#include "stages/layout.h"
+
+namespace coppice {
+
+struct BuildOptions {
+  std::uint32_t radius = 16;       // search radius of PLOC, 1 to PLOC_MAX_RADIUS
+  std::uint32_t morton_bits = 30;  // 30 or 60
+  bool lookback = true;            // false: sort and compaction by reduce, then scan: no workgroup waits for another
+  // How long a tile polls its predecessor before it sums it up itself, in turns of LOOKBACK_POLLS.
+  std::uint32_t lookback_turns = 16;
+};
+
+// Where a build keeps what. A pure function of the number of triangles and the options.
+struct BuildPlan {
+  std::uint32_t triangle_count;
+  BuildOptions options;
+  std::uint32_t rounds_bound;     // rounds that are enough for any scene of this size
+  std::uint32_t recorded_rounds;  // of them, those that may come before the finish
+
+  Slot<Triangle> triangles;  // in
+  Slot<Node> nodes;          // out: 2 active - 1, root at 0
+  Slot<BuildState> state;    // out
+  Slot<PlocRound> rounds;    // out: one an entered round, the last with one cluster
+
+  Slot<Aabb> boxes;
+  Slot<uint> keys[2], values[2];
+  Slot<uint> histogram, sort_status, sort_tickets;
+  Slot<Node> clusters[2];
+  Slot<uint> nearest, round_status;
+};
+
+// Rounds of PLOC that reduce `clusters` clusters to at most `target`, at worst; proved in docs/numerics.md.
+std::uint32_t ploc_rounds_bound(std::uint32_t clusters, std::uint32_t target);
+
+// Throws LayoutError if a slot does not fit a block, std::invalid_argument for options out of range.
+BuildPlan plan_build(Layout& layout, std::uint32_t triangle_count, const BuildOptions& options);
+
+// Triangles to tree: bounds, Morton codes, sort, PLOC.
+void append_build(Chain& chain, const BuildPlan& plan);
+
+}  // namespace coppice

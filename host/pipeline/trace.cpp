@@ -1,0 +1,93 @@
+#include "pipeline/trace.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "stages/stages.h"
+
+namespace coppice {
+
+namespace {
+
+constexpr std::uint32_t max_band_pixels = 1u << 20;
+
+uvec3 groups_of(std::uint32_t count, std::uint32_t group) { return {(count + group - 1) / group, 1, 1}; }
+
+void append_closest_hits(Chain& chain, const BuildPlan& build, const TracePlan& plan, std::uint32_t ray_count) {
+  const uvec3 groups = groups_of(ray_count, TRACE_GROUP);
+  const auto triangles = chain.at(build.triangles);
+  const auto rays = chain.at(plan.rays);
+  const auto hits = chain.at(plan.hits);
+  const auto counters = chain.at(plan.counters);
+  if (!plan.options.brute_force) {
+    chain.run(stages::trace_closest,
+              {chain.at(build.nodes), triangles, rays, hits, counters, chain.at(build.state), ray_count, 0}, groups,
+              {plan.options.max_turns, plan.options.visits_per_turn});
+    return;
+  }
+  std::uint32_t first = 0;
+  do {
+    const std::uint32_t count = std::min(BRUTE_FORCE_SLICE, build.triangle_count - first);
+    const bool last = first + count == build.triangle_count;
+    chain.run(stages::trace_brute_force, {triangles, rays, hits, counters, ray_count, first, count, last}, groups);
+    first += count;
+  } while (first < build.triangle_count);
+}
+
+}  // namespace
+
+std::array<uint, 256> srgb_thresholds() {
+  std::array<uint, 256> thresholds;
+  for (int code = 0; code < 256; ++code) {
+    const double encoded = (code - 0.5) / 255;
+    const double linear = encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+    const float least = code == 0 ? -std::numeric_limits<float>::infinity() : static_cast<float>(linear);
+    thresholds[code] = std::bit_cast<uint>(least);
+  }
+  return thresholds;
+}
+
+TracePlan plan_trace(Layout& layout, const BuildPlan& build, std::uint32_t material_count, const TraceOptions& options) {
+  TracePlan plan;
+  plan.options = options;
+  const std::uint32_t pixels = options.width * options.height;
+  plan.band_pixels = std::min(pixels, max_band_pixels);
+  plan.material_index = layout.add<uint>("material_index", build.triangle_count);
+  plan.materials = layout.add<SurfaceMaterial>("materials", material_count);
+  plan.film = layout.add<Film>("film", 1);
+  plan.lighting = layout.add<Lighting>("lighting", 1);
+  plan.srgb_thresholds = layout.add<uint>("srgb_thresholds", 256);
+  plan.image = layout.add<uint>("image", pixels);
+  plan.counters = layout.add<TraceCounters>("counters", 1);
+  plan.rays = layout.add<Ray>("rays", plan.band_pixels);
+  plan.hits = layout.add<Hit>("hits", plan.band_pixels);
+  plan.radiance = layout.add<vec3>("radiance", plan.band_pixels);
+  return plan;
+}
+
+void append_trace(Chain& chain, const BuildPlan& build, const TracePlan& plan) {
+  chain.clear(plan.counters);
+  const auto rays = chain.at(plan.rays);
+  const auto hits = chain.at(plan.hits);
+  const auto radiance = chain.at(plan.radiance);
+  const auto pixels = static_cast<std::uint32_t>(plan.image.count);
+  for (std::uint32_t first = 0; first < pixels; first += plan.band_pixels) {
+    const std::uint32_t count = std::min(plan.band_pixels, pixels - first);
+    for (std::uint32_t sample = 0; sample < plan.options.samples; ++sample) {
+      chain.run(stages::camera_rays, {chain.at(plan.film), rays, hits, first, count, sample, 0},
+                groups_of(count, CAMERA_RAYS_GROUP));
+      append_closest_hits(chain, build, plan, count);
+      chain.run(stages::shade,
+                {chain.at(build.triangles), chain.at(plan.material_index), chain.at(plan.materials),
+                 chain.at(plan.lighting), rays, hits, radiance, count, sample},
+                groups_of(count, SHADE_GROUP));
+    }
+    chain.run(stages::resolve,
+              {radiance, chain.at(plan.srgb_thresholds), chain.at(plan.image), first, count, plan.options.samples, 0},
+              groups_of(count, RESOLVE_GROUP));
+  }
+}
+
+}  // namespace coppice

@@ -1,0 +1,65 @@
+#include "scene/load_obj.h"
+
+#include <sstream>
+
+#include "scene/obj_materials.h"
+#include "scene/obj_text.h"
+#include "scene/printable.h"
+#include "scene/triangulate.h"
+
+namespace coppice {
+namespace {
+
+// What tinyobjloader's callbacks add to. They come in file order, over text that has been checked.
+struct Reading {
+  Scene& scene;
+  ObjMaterials& materials;
+  std::int64_t vertices_so_far = 0;
+  std::uint32_t material = 0;
+  std::vector<std::uint32_t> polygon;  // reused
+
+  void add_face(std::span<const tinyobj::index_t> corners) {
+    polygon.clear();
+    for (const tinyobj::index_t& corner : corners) {
+      const std::int64_t i = corner.vertex_index;  // from 1, or from -1 backwards
+      polygon.push_back(static_cast<std::uint32_t>(i > 0 ? i - 1 : vertices_so_far + i));
+    }
+    triangulate(scene.positions, polygon, scene.indices);
+    scene.material_index.resize(scene.indices.size(), material);
+  }
+};
+
+tinyobj::callback_t callbacks() {
+  tinyobj::callback_t result;
+  result.vertex_cb = [](void* user, auto...) { ++static_cast<Reading*>(user)->vertices_so_far; };
+  result.index_cb = [](void* user, tinyobj::index_t* corners, int count) {
+    static_cast<Reading*>(user)->add_face({corners, static_cast<std::size_t>(count)});
+  };
+  result.usemtl_cb = [](void* user, const char* name, int) {
+    auto& reading = *static_cast<Reading*>(user);
+    reading.material = reading.materials.find(name);
+  };
+  return result;
+}
+
+}  // namespace
+
+Scene load_obj(const std::filesystem::path& path) {
+  ObjText obj = read_obj_text(path);
+  Scene scene;
+  scene.name = printable(path.stem());
+  // Ours, not tinyobjloader's: it reads what is no number as 0, and rounds decimals less well.
+  scene.positions = std::move(obj.positions);
+  scene.warnings = std::move(obj.warnings);
+
+  // By callbacks, not LoadObj: that one drops triangles of polygons that it cannot cut, takes quadratic time
+  // over large ones, and fails on lines and points with odd indices, which we have no use for.
+  ObjMaterials materials(path, scene.warnings);
+  Reading reading{.scene = scene, .materials = materials, .polygon = {}};
+  std::istringstream stream(std::move(obj.text));
+  tinyobj::LoadObjWithCallback(stream, callbacks(), &reading, &materials);
+  scene.materials = materials.take();
+  return scene;
+}
+
+}  // namespace coppice

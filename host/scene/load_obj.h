@@ -1,0 +1,19 @@
+#pragma once
+
+#include <filesystem>
+
+#include "scene/scene.h"
+
+namespace coppice {
+
+// Reads a Wavefront OBJ file and the MTL files it names. Polygons are triangulated; all shapes become one
+// mesh, in file order; normals, texture coordinates, lines and points are read over. Degenerate triangles are
+// kept. A coordinate that is no number, or none that float can hold, arrives as non-finite, so that its
+// triangles are inactive and not wrong. The default material is materials[0], those of the MTL files follow;
+// a Ka that is absent or black is taken from Kd. What is odd but usable (no faces, a missing or broken MTL,
+// an unknown material) is told in Scene::warnings. Throws InputError, with the line number where there is
+// one, if the file is missing, a directory, empty or no OBJ at all, or has a face with fewer than three
+// vertices or with an index that is zero, out of range or no number.
+Scene load_obj(const std::filesystem::path& path);
+
+}  // namespace coppice

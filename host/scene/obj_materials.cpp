@@ -1,0 +1,94 @@
+#include "scene/obj_materials.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "scene/printable.h"
+
+namespace coppice {
+namespace {
+
+constexpr std::size_t MAX_WARNINGS = 20;
+
+float finite_or(float value, float otherwise) { return std::isfinite(value) ? value : otherwise; }
+
+glm::vec3 to_colour(const tinyobj::real_t (&rgb)[3]) {
+  return {finite_or(rgb[0], 0), finite_or(rgb[1], 0), finite_or(rgb[2], 0)};
+}
+
+Material to_material(const tinyobj::material_t& mtl) {
+  Material material;
+  material.name = mtl.name;
+  material.ambient = to_colour(mtl.ambient);
+  material.diffuse = to_colour(mtl.diffuse);
+  material.specular = to_colour(mtl.specular);
+  material.emission = to_colour(mtl.emission);
+  material.shininess = finite_or(mtl.shininess, 1);
+  material.opacity = std::clamp(finite_or(mtl.dissolve, 1), 0.0f, 1.0f);
+  material.index_of_refraction = finite_or(mtl.ior, 1);
+  material.illum = mtl.illum;
+  material.diffuse_map = mtl.diffuse_texname;
+  // Most files that light by textures or path tracing leave Ka out or black, and would be black in every
+  // shadow.
+  if (material.ambient == glm::vec3{0}) material.ambient = material.diffuse;
+  return material;
+}
+
+}  // namespace
+
+ObjMaterials::ObjMaterials(const std::filesystem::path& obj_path, std::vector<std::string>& warnings)
+    : folder_(obj_path.parent_path()), warnings_(warnings) {}
+
+bool ObjMaterials::operator()(const std::string& name, std::vector<tinyobj::material_t>*,
+                              std::map<std::string, int>*, std::string*, std::string*) {
+  // Always false, which says "not found": else tinyobjloader would not ask for the other files of the same
+  // line.
+  constexpr bool ask_for_the_next = false;
+
+  std::error_code error;
+  const std::filesystem::path path = folder_ / name;
+  std::ifstream file;
+  if (std::filesystem::is_regular_file(path, error)) file.open(path, std::ios::binary);
+  if (!file.is_open()) {
+    warn("material file '" + printable(std::string_view(name)) + "' not found");
+    return ask_for_the_next;
+  }
+
+  std::vector<tinyobj::material_t> read;
+  std::map<std::string, int> ignored_map;
+  std::string mtl_warnings, ignored_error;
+  tinyobj::LoadMtl(&ignored_map, &read, &file, &mtl_warnings, &ignored_error);
+  std::size_t count = 0;
+  for (const tinyobj::material_t& mtl : read) {
+    if (mtl.name.empty()) continue;  // what stood before the first newmtl
+    ++count;
+    if (!index_of_.try_emplace(mtl.name, static_cast<std::uint32_t>(materials_.size())).second) continue;
+    materials_.push_back(to_material(mtl));
+  }
+  if (count == 0) warn("no material in '" + printable(std::string_view(name)) + "'");
+  std::istringstream lines(mtl_warnings);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.empty())
+      warn("'" + printable(std::string_view(name)) + "': " + printable(std::string_view(line)));
+  }
+  return ask_for_the_next;
+}
+
+std::uint32_t ObjMaterials::find(std::string name) {
+  name.erase(name.find_last_not_of(" \t") + 1);
+  const auto [entry, is_new] = index_of_.try_emplace(name, 0);
+  if (is_new) warn("material '" + printable(std::string_view(name)) + "' not found, default used");
+  return entry->second;
+}
+
+void ObjMaterials::warn(std::string line) {
+  if (warnings_.size() == MAX_WARNINGS) line = "more about materials, not shown";
+  if (warnings_.size() > MAX_WARNINGS) return;
+  if (std::find(warnings_.begin(), warnings_.end(), line) == warnings_.end()) {
+    warnings_.push_back(std::move(line));
+  }
+}
+
+}  // namespace coppice

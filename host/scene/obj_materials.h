@@ -1,0 +1,41 @@
+#pragma once
+
+#include <tiny_obj_loader.h>
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace coppice {
+
+// Reads the MTL files that an OBJ names. None of them can fail the load: what is missing or broken becomes a
+// warning.
+class ObjMaterials : public tinyobj::MaterialReader {
+ public:
+  // `obj_path` is the file that the names are relative to; warnings are appended to `warnings`.
+  ObjMaterials(const std::filesystem::path& obj_path, std::vector<std::string>& warnings);
+
+  // tinyobjloader's hook, called for each file that `mtllib` names.
+  bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
+                  std::map<std::string, int>* material_map, std::string* warning,
+                  std::string* error) override;
+
+  // Index of the material of that name, 0 (the default material) with a warning where there is none.
+  std::uint32_t find(std::string name);
+
+  // The default material, then those of the files in order.
+  std::vector<Material> take() { return std::move(materials_); }
+
+ private:
+  void warn(std::string line);
+
+  std::filesystem::path folder_;
+  std::vector<std::string>& warnings_;
+  std::vector<Material> materials_ = {Material{}};
+  std::map<std::string, std::uint32_t, std::less<>> index_of_;
+};
+
+}  // namespace coppice

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+namespace coppice {
+
+// The text of an OBJ file that has been checked: every face has at least three vertices, every vertex index
+// is within the file, every vertex has three coordinates. A parser that trusts its input may read it.
+struct ObjText {
+  std::string text;  // continued lines joined, comments after a face blanked out
+  std::vector<glm::vec3>
+      positions;  // of the `v` statements in order; non-finite where the text is no finite float
+  std::vector<std::string> warnings;  // one line each
+};
+
+// Reads and checks a file in one pass. Throws InputError as load_obj says.
+ObjText read_obj_text(const std::filesystem::path& path);
+
+}  // namespace coppice

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace coppice {
+
+// What a surface is made of, in the terms of the MTL format. Colours are linear RGB, unbounded for emission.
+struct Material {
+  std::string name = "default";
+  glm::vec3 ambient{0.7f};           // Ka
+  glm::vec3 diffuse{0.7f};           // Kd
+  glm::vec3 specular{0.0f};          // Ks
+  glm::vec3 emission{0.0f};          // Ke
+  float shininess = 1.0f;            // Ns, the Phong exponent
+  float opacity = 1.0f;              // d, or 1 - Tr; 0 is invisible, 1 is solid
+  float index_of_refraction = 1.0f;  // Ni
+  int illum = 1;                     // illumination model, 0 to 10
+  std::string diffuse_map;  // map_Kd as written, a path relative to the MTL file; empty where there is none
+};
+
+// A light infinitely far away.
+struct DirectionalLight {
+  glm::vec3 direction{0.426401f, 0.852803f, 0.301511f};  // unit length, from the surface towards the light
+  glm::vec3 radiance{1.0f};                              // linear RGB
+};
+
+// A pinhole camera. `up` need be neither unit length nor orthogonal to the line of sight, only not parallel
+// to it.
+struct Camera {
+  glm::vec3 position{0.0f, 0.0f, 1.0f};
+  glm::vec3 target{0.0f};
+  glm::vec3 up{0.0f, 1.0f, 0.0f};
+  float vertical_fov_degrees = 40.0f;
+};
+
+// An indexed triangle mesh with what it takes to light and see it. +y is up; the unit of length is the
+// scene's own. Coordinates may be non-finite: a triangle with such a vertex is inactive, kept here and left
+// out of every tree.
+struct Scene {
+  std::string name;
+  std::vector<glm::vec3> positions;
+  std::vector<glm::uvec3> indices;                 // one per triangle, into positions; always in range
+  std::vector<std::uint32_t> material_index;       // one per triangle, into materials; always in range
+  std::vector<Material> materials = {Material{}};  // never empty
+  std::optional<Camera> camera;                    // absent: frame_scene chooses one
+  DirectionalLight light;
+  glm::vec3 ambient_light{0.35f};     // linear RGB, multiplies Material::ambient
+  std::vector<std::string> warnings;  // one line each, what was odd about the input but not fatal
+};
+
+// Number of triangles with at least one non-finite vertex coordinate.
+std::uint32_t count_inactive(const Scene& scene);
+
+// The scene's own camera where it has one, else one that sees all active triangles from a three-quarter view
+// a bit above them. `aspect` is width / height, positive. Every member of the result is finite and position
+// differs from target, for every scene: empty, a single point, extents from 1e-38 to 3e38. (A camera cannot
+// stand outside of a scene that fills the range of float: there it stands at the edge of the range.)
+Camera frame_scene(const Scene& scene, float aspect);
+
+}  // namespace coppice

@@ -1,0 +1,108 @@
+#include "scene/scene_source.h"
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+
+#include "scene/generators.h"
+#include "scene/hard_cases.h"
+#include "scene/input_error.h"
+#include "scene/load_obj.h"
+#include "scene/printable.h"
+
+namespace coppice {
+namespace {
+
+constexpr std::uint32_t SCATTER_DEFAULT = 1'000'000;
+constexpr std::uint32_t TERRAIN_DEFAULT = 500'000;
+
+// "name:text" as its two parts; no second part where there is no colon.
+struct NameAndCount {
+  std::string_view name;
+  std::optional<std::string_view> count;
+};
+
+NameAndCount split(std::string_view spec) {
+  const std::size_t colon = spec.find(':');
+  if (colon == std::string_view::npos) return {spec, std::nullopt};
+  return {spec.substr(0, colon), spec.substr(colon + 1)};
+}
+
+std::uint32_t parse_count(const std::string& spec, std::optional<std::string_view> text,
+                          std::uint32_t otherwise) {
+  if (!text) return otherwise;
+  std::uint32_t count = 0;
+  const char* const end = text->data() + text->size();
+  const auto [parsed_end, error] = std::from_chars(text->data(), end, count);
+  if (parsed_end != end || error != std::errc{} || count == 0 || count > MAX_GENERATED_TRIANGLES) {
+    throw InputError("scene '" + printable(std::string_view(spec)) + "': '" + printable(*text) +
+                     "' is no number of triangles from 1 to " + std::to_string(MAX_GENERATED_TRIANGLES));
+  }
+  return count;
+}
+
+Scene open_hard_case(const std::string& spec) {
+  const auto [name, count] = split(std::string_view(spec).substr(5));
+  const HardCase* const hard_case = find_hard_case(name);
+  if (!hard_case) {
+    std::string known;
+    for (const HardCase& other : hard_cases()) known.append(known.empty() ? "" : ", ").append(other.name);
+    throw InputError("unknown hard case '" + printable(name) + "': there are " + known);
+  }
+  Scene scene = hard_case->make(parse_count(spec, count, hard_case->default_triangle_count), 1);
+  scene.name = spec;
+  return scene;
+}
+
+Scene open_file(const std::string& spec) {
+  const std::filesystem::path path = spec;
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  if (extension == ".obj") return load_obj(path);
+
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) {
+    throw InputError(printable(path) + ": is a directory, not a scene file");
+  }
+  if (std::filesystem::exists(path, error)) {
+    throw InputError(
+        printable(path) + ": " +
+        (extension.empty() ? "no extension" : "unknown extension '" + printable(path.extension()) + "'") +
+        ", scene files end in .obj");
+  }
+  if (!extension.empty() || path.has_parent_path()) throw InputError(printable(path) + ": no such file");
+  throw InputError("unknown scene '" + printable(std::string_view(spec)) +
+                   "': neither a file nor a built-in scene (see 'coppice scenes')");
+}
+
+}  // namespace
+
+std::vector<SceneListing> list_scenes() {
+  static const auto grove_triangles = static_cast<std::uint32_t>(make_grove().indices.size());
+  std::vector<SceneListing> listings = {
+      {"grove", "a coppiced wood: stools, shoots, rocks and felled logs", grove_triangles, false},
+      {"scatter", "clusters of unconnected triangles of all sizes, for benchmarks", SCATTER_DEFAULT, true},
+      {"terrain", "one connected height field", TERRAIN_DEFAULT, true}};
+  for (const HardCase& hard_case : hard_cases()) {
+    listings.push_back({"hard:" + std::string(hard_case.name), std::string(hard_case.description),
+                        hard_case.default_triangle_count, true});
+  }
+  return listings;
+}
+
+Scene open_scene(const std::string& spec) {
+  if (spec.starts_with("hard:")) return open_hard_case(spec);
+  const auto [name, count] = split(spec);
+  if (name == "grove") {
+    if (count) throw InputError("scene 'grove' has one size, it takes no number of triangles");
+    return make_grove();
+  }
+  if (name == "scatter") return make_scatter(parse_count(spec, count, SCATTER_DEFAULT));
+  if (name == "terrain") return make_terrain(parse_count(spec, count, TERRAIN_DEFAULT));
+  return open_file(spec);
+}
+
+}  // namespace coppice

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "stages/chain.h"
+
+namespace coppice {
+
+// Runs chains by their twins, on host memory of the same layout.
+class CpuExecutor {
+ public:
+  explicit CpuExecutor(const Layout& layout);
+
+  Chain chain() const;
+
+  void run(const Step& step);
+  void run(std::span<const Step> steps) {
+    for (const Step& step : steps) run(step);
+  }
+
+  template <class T>
+  void upload(const Slot<T>& slot, std::span<const T> values) {
+    std::memcpy(at(slot.place), values.data(), values.size_bytes());
+  }
+
+  template <class T>
+  std::vector<T> read(const Slot<T>& slot) const {
+    std::vector<T> values(slot.count);
+    std::memcpy(values.data(), at(slot.place), slot.bytes());
+    return values;
+  }
+
+  std::byte* at(Place place) const { return reinterpret_cast<std::byte*>(blocks_.at(place.block).get()) + place.offset; }
+
+ private:
+  std::vector<std::unique_ptr<std::uint64_t[]>> blocks_;
+};
+
+}  // namespace coppice

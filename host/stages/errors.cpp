@@ -1,0 +1,29 @@
+#include "stages/errors.h"
+
+#include "interface/types.h"
+
+namespace coppice {
+
+std::string describe_error_word(std::uint32_t error_word) {
+  constexpr struct {
+    std::uint32_t bit;
+    const char* meaning;
+  } errors[] = {
+      {ERROR_SORT_LOOKBACK, "sort_pass: a tile waited in vain for the sums of the tiles before it"},
+      {ERROR_PLOC_LOOKBACK, "ploc_merge: a tile waited in vain for the sums of the tiles before it"},
+      {ERROR_PLOC_ROUNDS, "ploc_finish: clusters are left after the bound on rounds"},
+      {ERROR_TREE_TOO_DEEP, "trace_closest: the tree is deeper than the traversal stack"},
+      {ERROR_TRACE_STEPS, "trace_closest: a ray needs more steps than this driver's loops may take"},
+  };
+  std::string description;
+  for (const auto& error : errors) {
+    if (!(error_word & error.bit)) continue;
+    if (!description.empty()) description += "; ";
+    description += error.meaning;
+    error_word &= ~error.bit;
+  }
+  if (error_word) description += (description.empty() ? "" : "; ") + std::string("unknown error bits");
+  return description;
+}
+
+}  // namespace coppice

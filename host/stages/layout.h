@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace coppice {
+
+// A position in device or host memory, before it has an address.
+struct Place {
+  std::uint32_t block = 0;
+  std::uint64_t offset = 0;
+};
+
+// An array of T that stages read and write.
+template <class T>
+struct Slot {
+  Place place;
+  std::uint64_t count = 0;
+
+  std::uint64_t bytes() const { return count * sizeof(T); }
+};
+
+struct SlotListing {
+  std::string name;
+  Place place;
+  std::uint64_t count;
+  std::uint64_t element_bytes;
+
+  std::uint64_t bytes() const { return count * element_bytes; }
+};
+
+struct LayoutError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// Hands out places for slots, in blocks no larger than a device allocates at once. Behind every slot lies a guard, so
+// that a write past the end of one is seen and is not another's first word.
+class Layout {
+ public:
+  static constexpr std::uint64_t guard_bytes = 256;
+
+  explicit Layout(std::uint64_t max_block_bytes = std::uint64_t{1} << 30) : max_block_bytes_(max_block_bytes) {}
+
+  // Throws LayoutError if the slot alone is larger than a block may be.
+  template <class T>
+  Slot<T> add(const std::string& name, std::uint64_t count) {
+    return {reserve({name, {}, count, sizeof(T)}), count};
+  }
+
+  const std::vector<std::uint64_t>& block_bytes() const { return block_bytes_; }
+  const std::vector<SlotListing>& slots() const { return slots_; }
+
+ private:
+  Place reserve(SlotListing slot);
+
+  std::uint64_t max_block_bytes_;
+  std::vector<std::uint64_t> block_bytes_;
+  std::vector<SlotListing> slots_;
+};
+
+}  // namespace coppice

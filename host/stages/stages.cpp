@@ -1,0 +1,21 @@
+#include "stages/stages.h"
+
+#include "kernels_spirv.h"
+
+namespace coppice {
+
+#define COPPICE_DEFINE_STAGE(stem, Args)                                                           \
+  const Stage<Args> stages::stem{                                                                  \
+      {#stem, spirv::stem, [](const void* args) { twins::stem(*static_cast<const Args*>(args)); }}}; \
+  static_assert(sizeof(Args) <= 128 && sizeof(Args) % 8 == 0, "push constants of " #stem);
+COPPICE_STAGES(COPPICE_DEFINE_STAGE)
+#undef COPPICE_DEFINE_STAGE
+
+std::span<const StageDeclaration* const> all_stages() {
+#define COPPICE_LIST_STAGE(stem, Args) &stages::stem,
+  static constexpr const StageDeclaration* list[] = {COPPICE_STAGES(COPPICE_LIST_STAGE)};
+#undef COPPICE_LIST_STAGE
+  return list;
+}
+
+}  // namespace coppice

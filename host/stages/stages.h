@@ -1,0 +1,46 @@
+#pragma once
+
+#include "interface/bounds.h"
+#include "interface/morton.h"
+#include "interface/ploc.h"
+#include "interface/sort.h"
+#include "interface/trace.h"
+#include "stages/stage.h"
+
+// THE TABLE. A line here, a kernel kernels/<stem>.comp and a twin host/twins/<stem>.cpp make a stage.
+#define COPPICE_STAGES(STAGE)                     \
+  STAGE(primitive_bounds, PrimitiveBoundsArgs)    \
+  STAGE(morton_codes, MortonCodesArgs)            \
+  STAGE(sort_histogram, SortHistogramArgs)        \
+  STAGE(sort_digit_scan, SortDigitScanArgs)       \
+  STAGE(sort_tile_counts, SortPassArgs)           \
+  STAGE(sort_tile_scan, SortTileScanArgs)         \
+  STAGE(sort_pass, SortPassArgs)                  \
+  STAGE(ploc_leaves, PlocLeavesArgs)              \
+  STAGE(ploc_nearest, PlocNearestArgs)            \
+  STAGE(ploc_tile_counts, PlocMergeArgs)          \
+  STAGE(ploc_tile_scan, PlocTileScanArgs)         \
+  STAGE(ploc_merge, PlocMergeArgs)                \
+  STAGE(ploc_finish, PlocFinishArgs)              \
+  STAGE(camera_rays, CameraRaysArgs)              \
+  STAGE(trace_closest, TraceClosestArgs)          \
+  STAGE(trace_brute_force, TraceBruteForceArgs)   \
+  STAGE(shade, ShadeArgs)                         \
+  STAGE(resolve, ResolveArgs)
+
+namespace coppice {
+
+#define COPPICE_DECLARE_STAGE(stem, Args) \
+  namespace twins {                       \
+  void stem(const Args& args);            \
+  }                                       \
+  namespace stages {                      \
+  extern const Stage<Args> stem;          \
+  }
+COPPICE_STAGES(COPPICE_DECLARE_STAGE)
+#undef COPPICE_DECLARE_STAGE
+
+// In the order of the table.
+std::span<const StageDeclaration* const> all_stages();
+
+}  // namespace coppice

@@ -1,0 +1,33 @@
+#include <limits>
+
+#include "interface/trace.h"
+
+namespace coppice::twins {
+
+namespace {
+
+// Van der Corput's sequence in base 2, to 24 bits.
+float radical_inverse(uint index) {
+  uint reversed = 0;
+  for (uint bit = 0; bit < 24; ++bit) reversed |= (index >> bit & 1u) << (23 - bit);
+  return static_cast<float>(reversed) / 16777216.0f;
+}
+
+}  // namespace
+
+void camera_rays(const CameraRaysArgs& args) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  const Film& film = args.film[0];
+  const float across = (static_cast<float>(args.sample_index) + 0.5f) / static_cast<float>(film.samples);
+  const float down = film.samples == 1 ? 0.5f : radical_inverse(args.sample_index);
+  for (uint i = 0; i < args.ray_count; ++i) {
+    const uint pixel = args.first_pixel + i;
+    const float x = static_cast<float>(pixel % film.width) + across;
+    const float y = static_cast<float>(pixel / film.width) + down;
+    const vec3 direction = film.corner + film.right * x + film.down * y;
+    args.rays[i] = {film.position, 0.0f, direction, infinity};
+    args.hits[i] = {infinity, NO_TRIANGLE, 0.0f, 0.0f};
+  }
+}
+
+}  // namespace coppice::twins

@@ -1,0 +1,61 @@
+#include "twins/ploc_rounds.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstdlib>
+#include <tuple>
+
+#include "twins/normalised.h"
+
+namespace coppice::twins {
+
+PlocRound make_round(uint cluster_count, uint merged_before, bool pair_all) {
+  PlocRound round{};
+  round.cluster_count = cluster_count;
+  round.merged_before = merged_before;
+  round.pair_all = pair_all;
+  if (cluster_count > PLOC_FINISH_CLUSTERS) {
+    round.nearest_groups = {(cluster_count - 1) / PLOC_NEAREST_TILE + 1, 1, 1};
+    round.merge_groups = {(cluster_count - 1) / PLOC_MERGE_TILE + 1, 1, 1};
+    round.tile_scan_groups = {1, 1, 1};
+  }
+  return round;
+}
+
+PlocRound round_after(const PlocRound& round, uint merged) {
+  return make_round(round.cluster_count - merged, round.merged_before + merged,
+                    merged * PLOC_SLOW_ROUND < round.cluster_count);
+}
+
+Node make_parent(const Node& left, const Node& right, uint first_child) {
+  Node parent{left.box_min, first_child, left.box_max, std::max(left.height, right.height) + 1};
+  for (int axis = 0; axis < 3; ++axis) {
+    parent.box_min[axis] = std::min(parent.box_min[axis], right.box_min[axis]);
+    parent.box_max[axis] = std::max(parent.box_max[axis], right.box_max[axis]);
+  }
+  return parent;
+}
+
+uint children_place(uint active_count, uint rank) { return 2 * (active_count - 1 - rank) - 1; }
+
+uint nearest_neighbour(const Aabb* normalised_boxes, uint i, uint cluster_count, uint radius) {
+  // Smaller is nearer: area, gap, whether the pair's lower index has bit floor(log2 gap) set, lower index.
+  using Rank = std::tuple<float, uint, bool, uint>;
+  const uint first = i - std::min(i, radius);
+  const uint last = std::min(i + radius, cluster_count - 1);
+  Rank best_rank;
+  uint best = i;
+  for (uint j = first; j <= last; ++j) {
+    if (j == i) continue;
+    const uint lower = std::min(i, j), gap = std::max(i, j) - lower;
+    const bool odd = (lower & std::bit_floor(gap)) != 0;
+    const Rank rank(union_area(normalised_boxes[i], normalised_boxes[j]), gap, odd, lower);
+    if (best == i || rank < best_rank) {
+      best_rank = rank;
+      best = j;
+    }
+  }
+  return best;
+}
+
+}  // namespace coppice::twins

@@ -1,0 +1,28 @@
+#include <array>
+
+#include "interface/sort.h"
+#include "twins/lookback_words.h"
+
+namespace coppice::twins {
+
+void sort_pass(const SortPassArgs& args) {
+  const uint shift = args.pass % SORT_PASSES_PER_WORD * SORT_DIGIT_BITS;
+  std::array<uint, SORT_DIGITS> counts{};
+  for (uint i = 0; i < args.count; ++i) {
+    const std::size_t source = std::size_t{i} * args.key_words;
+    const uint digit = args.keys_in[source + args.pass / SORT_PASSES_PER_WORD] >> shift & (SORT_DIGITS - 1);
+    const uint place = args.digit_offsets[digit] + counts[digit]++;
+    for (uint word = 0; word < args.key_words; ++word) {
+      args.keys_out[std::size_t{place} * args.key_words + word] = args.keys_in[source + word];
+    }
+    args.values_out[place] = args.values_in[i];
+
+    const bool ends_tile = (i + 1) % SORT_TILE == 0 || i + 1 == args.count;
+    if (args.lookback && ends_tile) {
+      leave_inclusive_prefix(args.tile_status, i / SORT_TILE, counts);
+      ++args.ticket[0];
+    }
+  }
+}
+
+}  // namespace coppice::twins

@@ -1,0 +1,26 @@
+// In:  the film. Out: one ray a pixel, and no hit yet. Directions are not normalised: t counts in units of them.
+// Samples of a pixel follow a Hammersley set, a single one is the pixel's centre.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "interface/trace.h"
+
+layout(local_size_x = CAMERA_RAYS_GROUP) in;
+layout(push_constant, scalar) uniform Push { CameraRaysArgs args; };
+
+vec2 film_position(uint pixel, Film film) {
+  precise float across = (float(args.sample_index) + 0.5) / float(film.samples);
+  float down = film.samples == 1u ? 0.5 : float(bitfieldReverse(args.sample_index) >> 8) * 5.9604644775390625e-8;
+  precise vec2 position = vec2(float(pixel % film.width) + across, float(pixel / film.width) + down);
+  return position;
+}
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i >= args.ray_count) return;
+  Film film = args.film.at[0];
+  vec2 position = film_position(args.first_pixel + i, film);
+  precise vec3 direction = film.corner + film.right * position.x + film.down * position.y;
+  float far = uintBitsToFloat(0x7f800000u);
+  args.rays.at[i] = Ray(film.position, 0.0, direction, far);
+  args.hits.at[i] = Hit(far, NO_TRIANGLE, 0.0, 0.0);
+}

@@ -1,0 +1,19 @@
+#ifndef COPPICE_INTERFACE_BOUNDS_H
+#define COPPICE_INTERFACE_BOUNDS_H
+#include "types.h"
+INTERFACE_BEGIN
+
+const uint PRIMITIVE_BOUNDS_GROUP = 64;
+const uint PRIMITIVE_BOUNDS_PER_INVOCATION = 16;
+const uint PRIMITIVE_BOUNDS_TILE = PRIMITIVE_BOUNDS_GROUP * PRIMITIVE_BOUNDS_PER_INVOCATION;
+
+struct PrimitiveBoundsArgs {
+  TriangleBuffer triangles;  // triangle_count
+  AabbBuffer boxes;          // triangle_count; an inactive triangle's box has box_min > box_max
+  BuildStateBuffer state;
+  uint triangle_count;
+  uint padding;
+};
+
+INTERFACE_END
+#endif

@@ -1,0 +1,19 @@
+#ifndef COPPICE_INTERFACE_MORTON_H
+#define COPPICE_INTERFACE_MORTON_H
+#include "types.h"
+INTERFACE_BEGIN
+
+const uint MORTON_GROUP = 256;
+const uint MORTON_INACTIVE = 0xffffffffu;  // every key word of an inactive triangle: sorts behind all codes
+
+struct MortonCodesArgs {
+  AabbBuffer boxes;        // triangle_count
+  BuildStateBuffer state;  // scene box, read
+  UintBuffer keys;         // triangle_count * key_words, low word first
+  UintBuffer values;       // triangle_count: triangle indices
+  uint triangle_count;
+  uint key_words;  // 1: 30-bit codes, 2: 60-bit codes
+};
+
+INTERFACE_END
+#endif

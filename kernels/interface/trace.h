@@ -1,0 +1,127 @@
+#ifndef COPPICE_INTERFACE_TRACE_H
+#define COPPICE_INTERFACE_TRACE_H
+#include "types.h"
+INTERFACE_BEGIN
+
+const uint CAMERA_RAYS_GROUP = 64;
+const uint TRACE_GROUP = 64;
+const uint SHADE_GROUP = 64;
+const uint RESOLVE_GROUP = 64;
+
+const uint TRACE_STACK = 128;         // entries; a tree of greater height is refused (ERROR_TREE_TOO_DEEP)
+const uint BRUTE_FORCE_SLICE = 16384;  // triangles one dispatch tests, below old lavapipe's loop limit
+const uint NO_TRIANGLE = 0xffffffffu;
+
+struct Ray {
+  vec3 origin;
+  float t_min;
+  vec3 direction;  // any length; t is in units of it
+  float t_max;
+};
+
+// Closest hit; of equally close triangles the one with the smallest index, so that the order of traversal, and with
+// it the tree, never decides.
+struct Hit {
+  float t;        // infinity for a miss
+  uint triangle;  // NO_TRIANGLE for a miss
+  float u, v;     // barycentric coordinates of corners b and c
+};
+
+// Pinhole camera: a ray through film coordinates (x, y) in [0, width) x [0, height) has the direction
+// corner + x * right + y * down.
+struct Film {
+  vec3 position;
+  uint width;
+  vec3 corner;
+  uint height;
+  vec3 right;
+  uint samples;
+  vec3 down;
+  uint padding;
+};
+
+struct SurfaceMaterial {
+  vec3 ambient;  // emission and ambient light, already multiplied
+  vec3 diffuse;  // diffuse colour times the light's radiance
+};
+
+// The directional light and the background, linear RGB.
+struct Lighting {
+  vec3 light_direction;  // unit, towards the light
+  float padding0;
+  vec3 sky_horizon;
+  float padding1;
+  vec3 sky_zenith;
+  float padding2;
+};
+
+// Counted on the device; 64-bit sums as (low, high) words.
+struct TraceCounters {
+  uvec2 rays, hits, steps;
+  uint padding0, padding1;
+};
+
+INTERFACE_BUFFER(RayBuffer, Ray, 16)
+INTERFACE_BUFFER(HitBuffer, Hit, 16)
+INTERFACE_BUFFER(FilmBuffer, Film, 16)
+INTERFACE_BUFFER(SurfaceMaterialBuffer, SurfaceMaterial, 8)
+INTERFACE_BUFFER(LightingBuffer, Lighting, 16)
+INTERFACE_BUFFER(TraceCountersBuffer, TraceCounters, 16)
+INTERFACE_BUFFER(Vec3Buffer, vec3, 4)
+
+struct CameraRaysArgs {
+  FilmBuffer film;
+  RayBuffer rays;  // ray_count
+  HitBuffer hits;  // ray_count, set to misses
+  uint first_pixel;
+  uint ray_count;
+  uint sample_index;
+  uint padding;
+};
+
+struct TraceClosestArgs {
+  NodeBuffer nodes;
+  TriangleBuffer triangles;
+  RayBuffer rays;
+  HitBuffer hits;
+  TraceCountersBuffer counters;
+  BuildStateBuffer state;
+  uint ray_count;
+  uint padding;
+};
+
+struct TraceBruteForceArgs {
+  TriangleBuffer triangles;
+  RayBuffer rays;
+  HitBuffer hits;  // read and improved
+  TraceCountersBuffer counters;
+  uint ray_count;
+  uint first_triangle;
+  uint triangle_count;  // of this slice
+  uint last_slice;      // 1: count rays and hits
+};
+
+struct ShadeArgs {
+  TriangleBuffer triangles;
+  UintBuffer material_index;  // one a triangle
+  SurfaceMaterialBuffer materials;
+  LightingBuffer lighting;
+  RayBuffer rays;
+  HitBuffer hits;
+  Vec3Buffer radiance;  // ray_count; summed over the samples
+  uint ray_count;
+  uint sample_index;
+};
+
+struct ResolveArgs {
+  Vec3Buffer radiance;
+  UintBuffer srgb_thresholds;  // 256 floats as bits: the least linear value of each 8-bit sRGB code
+  UintBuffer image;            // RGBA8, red in the low byte
+  uint first_pixel;
+  uint pixel_count;
+  uint samples;
+  uint padding;
+};
+
+INTERFACE_END
+#endif

@@ -1,0 +1,102 @@
+// What host code and kernels both read: this folder is compiled by g++ and by glslang.
+// Every struct is padded to its alignment by hand, since scalar layout does not pad nested structs and C++ does.
+#ifndef COPPICE_INTERFACE_TYPES_H
+#define COPPICE_INTERFACE_TYPES_H
+
+#ifdef __cplusplus
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#define INTERFACE_BEGIN namespace coppice {
+#define INTERFACE_END }
+// A typed address: of device memory when a kernel reads it, of host memory when its twin does.
+#define INTERFACE_BUFFER(Name, Type, Alignment) using Name = Address<Type>;
+#define INTERFACE_COHERENT_BUFFER(Name, Type, Alignment) using Name = Address<Type>;
+
+namespace coppice {
+using uint = std::uint32_t;
+using glm::uvec2;
+using glm::uvec3;
+using glm::vec3;
+
+template <class T>
+struct Address {
+  std::uint64_t value = 0;
+
+  // Only for addresses of host memory, so only in twins.
+  T& operator[](std::size_t index) const { return reinterpret_cast<T*>(value)[index]; }
+};
+}  // namespace coppice
+
+#else
+
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_ballot : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#extension GL_KHR_shader_subgroup_vote : require
+
+#define INTERFACE_BEGIN
+#define INTERFACE_END
+#define INTERFACE_BUFFER(Name, Type, Alignment) \
+  layout(buffer_reference, scalar, buffer_reference_align = Alignment) buffer Name { Type at[]; };
+// For words that other workgroups write while this one reads them. Old lavapipe hoists plain polls out of their
+// loop and miscompiles the Vulkan memory model, but reads `volatile coherent` words afresh.
+#define INTERFACE_COHERENT_BUFFER(Name, Type, Alignment) \
+  layout(buffer_reference, scalar, buffer_reference_align = Alignment) volatile coherent buffer Name { Type at[]; };
+
+#endif
+
+INTERFACE_BEGIN
+
+// A triangle by its corners, in world units.
+struct Triangle {
+  vec3 a, b, c;
+};
+
+struct Aabb {
+  vec3 box_min, box_max;
+};
+
+// One entry of a BVH2, and one cluster while the tree grows. Root at 0; the two children of an internal node are
+// neighbours in memory, so one 64-byte read fetches both boxes.
+struct Node {
+  vec3 box_min;
+  uint child;   // leaf: triangle index; internal node: index of its first child, the second follows it
+  vec3 box_max;
+  uint height;  // 0 for a leaf, else 1 + the larger height of the children
+};
+
+INTERFACE_BUFFER(UintBuffer, uint, 4)
+INTERFACE_COHERENT_BUFFER(CoherentUintBuffer, uint, 4)
+INTERFACE_BUFFER(TriangleBuffer, Triangle, 4)
+INTERFACE_BUFFER(AabbBuffer, Aabb, 8)
+INTERFACE_BUFFER(NodeBuffer, Node, 16)
+
+// Bits of the error word: a kernel that cannot go on sets its bit, the host names the stage (stages/errors.h).
+const uint ERROR_SORT_LOOKBACK = 1u;
+const uint ERROR_PLOC_LOOKBACK = 2u;
+const uint ERROR_PLOC_ROUNDS = 4u;
+const uint ERROR_TREE_TOO_DEEP = 8u;
+const uint ERROR_TRACE_STEPS = 16u;
+
+// What the build knows of itself. Zero at the start of a build.
+struct BuildState {
+  uvec3 box_min_complement;  // ~ordered(x), so that a maximum over zero-initialised words finds the minimum
+  uint active_count;         // triangles in the tree
+  uvec3 box_max;             // ordered(x), see lib/ordered_float.glsl
+  uint round_count;          // PLOC rounds it took
+  uint error_word;
+  uint padding0, padding1, padding2;
+};
+
+INTERFACE_BUFFER(BuildStateBuffer, BuildState, 16)
+
+INTERFACE_END
+
+#endif

@@ -1,0 +1,28 @@
+// Normalised coordinates: world units times a power of two that brings the scene's largest coordinate to [2^59, 2^60),
+// so that no area overflows and none that matters is denormal. See docs/numerics.md, "Normalised coordinates".
+#include "lib/ordered_float.glsl"
+
+const float NORMALISED_FLOOR = 8.673617379884035e-19;  // 2^-60: smaller coordinates count as zero
+const float AREA_FLOOR = 7.888609052210118e-31;        // 2^-100: smaller areas count as zero
+
+struct Normalisation {
+  float factor_a, factor_b;  // two factors: their product may lie outside the range of a float
+};
+
+vec3 scene_box_min(BuildState state) { return from_ordered(~state.box_min_complement); }
+vec3 scene_box_max(BuildState state) { return from_ordered(state.box_max); }
+
+float power_of_two(int exponent) { return uintBitsToFloat(uint(exponent + 127) << 23); }
+int biased_exponent(float x) { return int((floatBitsToUint(x) >> 23) & 0xffu); }
+
+Normalisation scene_normalisation(BuildState state) {
+  vec3 largest = max(abs(scene_box_min(state)), abs(scene_box_max(state)));
+  int exponent = 186 - biased_exponent(max(max(largest.x, largest.y), largest.z));
+  int half_exponent = exponent >> 1;
+  return Normalisation(power_of_two(half_exponent), power_of_two(exponent - half_exponent));
+}
+
+vec3 normalised(vec3 position, Normalisation normalisation) {
+  precise vec3 scaled = position * normalisation.factor_a * normalisation.factor_b;
+  return mix(scaled, vec3(0.0), lessThan(abs(scaled), vec3(NORMALISED_FLOOR)));
+}

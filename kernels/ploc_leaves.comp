@@ -1,0 +1,18 @@
+// In:  boxes and the Morton order of the triangles. Out: one cluster an active triangle, in that order; round 0.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "interface/ploc.h"
+#include "lib/ploc_round.glsl"
+
+layout(local_size_x = PLOC_LEAVES_GROUP) in;
+layout(push_constant, scalar) uniform Push { PlocLeavesArgs args; };
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  uint active_count = args.state.at[0].active_count;
+  if (i == 0u) args.rounds.at[0] = planned_round(active_count, 0u, false);
+  if (i >= active_count) return;
+  uint triangle = args.values.at[i];
+  Aabb box = args.boxes.at[triangle];
+  args.clusters.at[i] = Node(box.box_min, triangle, box.box_max, 0u);
+}

@@ -1,0 +1,24 @@
+// In:  radiance summed over the samples. Out: RGBA8 pixels, sRGB (IEC 61966-2-1). The code of a channel is found by
+// comparing with the least linear value of each code, so it is exact on every device.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "interface/trace.h"
+
+layout(local_size_x = RESOLVE_GROUP) in;
+layout(push_constant, scalar) uniform Push { ResolveArgs args; };
+
+uint srgb_code(float linear) {
+  uint code = 0u;
+  [[dont_unroll]] for (uint bit = 128u; bit != 0u; bit >>= 1) {
+    if (linear >= uintBitsToFloat(args.srgb_thresholds.at[code + bit])) code += bit;
+  }
+  return code;
+}
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i >= args.pixel_count) return;
+  precise vec3 mean = args.radiance.at[i] / float(args.samples);
+  args.image.at[args.first_pixel + i] =
+      0xff000000u | (srgb_code(mean.z) << 16) | (srgb_code(mean.y) << 8) | srgb_code(mean.x);
+}

@@ -1,0 +1,49 @@
+// In:  hits. Out: radiance, added up over the samples of a pixel. Ambient colour plus one directional light on the side
+// that faces the ray; the sky where nothing is hit.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "interface/trace.h"
+#include "lib/intersect_triangle.glsl"
+
+layout(local_size_x = SHADE_GROUP) in;
+layout(push_constant, scalar) uniform Push { ShadeArgs args; };
+
+// Divided by the largest component first: squares of large coordinates overflow, of small ones vanish.
+vec3 unit(vec3 v) {
+  vec3 size = abs(v);
+  float largest = max(max(size.x, size.y), size.z);
+  if (largest == 0.0) return vec3(0.0);
+  precise vec3 scaled = v / largest;
+  precise vec3 result = scaled / sqrt(exact_dot(scaled, scaled));
+  return result;
+}
+
+vec3 sky(vec3 direction, Lighting lighting) {
+  precise float height = max(unit(direction).y, 0.0);
+  precise vec3 colour = lighting.sky_horizon + (lighting.sky_zenith - lighting.sky_horizon) * height;
+  return colour;
+}
+
+vec3 surface(Ray ray, uint index, Lighting lighting) {
+  Triangle triangle = args.triangles.at[index];
+  precise vec3 edge_b = triangle.b - triangle.a;
+  precise vec3 edge_c = triangle.c - triangle.a;
+  vec3 normal = unit(exact_cross(unit(edge_b), unit(edge_c)));
+  float side = exact_dot(normal, ray.direction) > 0.0 ? -1.0 : 1.0;
+  float cosine = max(exact_dot(normal, lighting.light_direction) * side, 0.0);
+  SurfaceMaterial material = args.materials.at[args.material_index.at[index]];
+  precise vec3 colour = material.ambient + material.diffuse * cosine;
+  return colour;
+}
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  if (i >= args.ray_count) return;
+  Ray ray = args.rays.at[i];
+  uint index = args.hits.at[i].triangle;
+  Lighting lighting = args.lighting.at[0];
+  vec3 colour = index == NO_TRIANGLE ? sky(ray.direction, lighting) : surface(ray, index, lighting);
+  precise vec3 sum = colour;
+  if (args.sample_index != 0u) sum = args.radiance.at[i] + colour;
+  args.radiance.at[i] = sum;
+}

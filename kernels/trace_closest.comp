@@ -1,0 +1,99 @@
+// In:  a BVH2 and rays. Out: the closest hit of each. Depth-first, the nearer child first; a pair of children is one
+// 64-byte read. The height of the tree bounds the stack, and is checked against it.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "interface/trace.h"
+#include "lib/intersect_box.glsl"
+#include "lib/intersect_triangle.glsl"
+#include "lib/trace_counters.glsl"
+
+layout(local_size_x = TRACE_GROUP) in;
+layout(push_constant, scalar) uniform Push { TraceClosestArgs args; };
+// Turns of the loop, each of TRACE_VISITS pairs; a tree has fewer pairs than triangles, so this binds only on a driver
+// that ends long loops by itself.
+layout(constant_id = 0) const uint TRACE_MAX_TURNS = 0xffffffffu;
+layout(constant_id = 1) const uint TRACE_VISITS = 1u;
+
+const uint NO_PAIR = 0u;  // the root is no child
+
+struct Traversal {
+  uint pair;  // first of the two children to visit next
+  uint top;
+  uint steps;
+};
+
+uint stack_pair[TRACE_STACK];
+float stack_enter[TRACE_STACK];
+
+bool visit_child(Node child, BoxRay box, Ray ray, inout Hit hit, out float enter) {
+  enter = ray.t_min;
+  precise float leave = hit.t * SLAB_PAD;
+  if (!intersect_box(box, child.box_min, child.box_max, leave, enter)) return false;
+  if (child.height != 0u) return true;
+  intersect_triangle(ray, args.triangles.at[child.child], child.child, hit);
+  return false;
+}
+
+void visit_pair(BoxRay box, Ray ray, inout Hit hit, inout Traversal state) {
+  Node left = args.nodes.at[state.pair], right = args.nodes.at[state.pair + 1u];
+  float left_enter, right_enter;
+  bool go_left = visit_child(left, box, ray, hit, left_enter);
+  bool go_right = visit_child(right, box, ray, hit, right_enter);
+  precise float leave = hit.t * SLAB_PAD;
+  go_left = go_left && left_enter <= leave;  // the right child may have been a closer leaf
+  ++state.steps;
+  if (go_left && go_right) {
+    bool left_first = left_enter <= right_enter;
+    stack_pair[state.top] = left_first ? right.child : left.child;
+    stack_enter[state.top] = left_first ? right_enter : left_enter;
+    ++state.top;
+    state.pair = left_first ? left.child : right.child;
+  } else {
+    state.pair = go_left ? left.child : (go_right ? right.child : NO_PAIR);
+  }
+}
+
+void pop_pair(Hit hit, inout Traversal state) {
+  --state.top;
+  precise float leave = hit.t * SLAB_PAD;
+  if (stack_enter[state.top] <= leave) state.pair = stack_pair[state.top];
+}
+
+uint trace(Ray ray, inout Hit hit) {
+  BoxRay box = box_ray(ray);
+  Traversal state = Traversal(NO_PAIR, 0u, 0u);
+  float enter;
+  Node root = args.nodes.at[0];
+  if (visit_child(root, box, ray, hit, enter)) state.pair = root.child;
+  uint turns = 0u;
+  [[dont_unroll]] while (turns < TRACE_MAX_TURNS && (state.pair != NO_PAIR || state.top != 0u)) {
+    ++turns;
+    [[unroll]] for (uint k = 0u; k < TRACE_VISITS; ++k) {
+      if (state.pair == NO_PAIR && state.top != 0u) pop_pair(hit, state);
+      if (state.pair != NO_PAIR) visit_pair(box, ray, hit, state);
+    }
+  }
+  if (state.pair != NO_PAIR || state.top != 0u) atomicOr(args.state.at[0].error_word, ERROR_TRACE_STEPS);
+  return state.steps;
+}
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  bool present = i < args.ray_count;
+  if (args.state.at[0].active_count != 0u && args.nodes.at[0].height > TRACE_STACK) {
+    atomicOr(args.state.at[0].error_word, ERROR_TREE_TOO_DEEP);
+    return;
+  }
+  uint steps = 0u;
+  bool has_hit = false;
+  if (present && args.state.at[0].active_count != 0u) {
+    Ray ray = args.rays.at[i];
+    Hit hit = args.hits.at[i];
+    if (can_hit(ray)) steps = trace(ray, hit);
+    args.hits.at[i] = hit;
+    has_hit = hit.triangle != NO_TRIANGLE;
+  }
+  COUNT_INTO(args.counters.at[0].rays, present ? 1u : 0u)
+  COUNT_INTO(args.counters.at[0].hits, has_hit ? 1u : 0u)
+  COUNT_INTO(args.counters.at[0].steps, steps)
+}

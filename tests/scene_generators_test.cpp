@@ -1,0 +1,263 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <glm/glm.hpp>
+#include <limits>
+#include <string>
+
+#include "scene/generators.h"
+#include "scene/hard_cases.h"
+#include "scene/input_error.h"
+#include "scene/scene_source.h"
+
+namespace coppice {
+namespace {
+
+bool same_bits(const Scene& a, const Scene& b) {
+  return a.positions.size() == b.positions.size() && a.indices == b.indices &&
+         a.material_index == b.material_index &&
+         std::memcmp(a.positions.data(), b.positions.data(), a.positions.size() * sizeof(glm::vec3)) == 0;
+}
+
+void expect_consistent(const Scene& scene) {
+  ASSERT_FALSE(scene.materials.empty());
+  ASSERT_EQ(scene.material_index.size(), scene.indices.size());
+  for (const glm::uvec3 t : scene.indices) ASSERT_LT(std::max({t.x, t.y, t.z}), scene.positions.size());
+  for (const std::uint32_t index : scene.material_index) ASSERT_LT(index, scene.materials.size());
+}
+
+void expect_usable_camera(const Scene& scene) {
+  for (const float aspect : {0.1f, 1.0f, 1.7f, 10.0f}) {
+    const Camera camera = frame_scene(scene, aspect);
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_TRUE(std::isfinite(camera.position[axis]));
+      EXPECT_TRUE(std::isfinite(camera.target[axis]));
+    }
+    EXPECT_NE(camera.position, camera.target);
+  }
+}
+
+Scene one_triangle(glm::vec3 a, glm::vec3 b, glm::vec3 c) {
+  Scene scene;
+  scene.positions = {a, b, c};
+  scene.indices = {{0, 1, 2}};
+  scene.material_index = {0};
+  return scene;
+}
+
+TEST(Grove, IsTheSameEveryTimeAndWorthLookingAt) {
+  const Scene scene = make_grove();
+  EXPECT_TRUE(same_bits(scene, make_grove()));
+  expect_consistent(scene);
+  EXPECT_EQ(count_inactive(scene), 0u);
+  EXPECT_GE(scene.indices.size(), 100'000u);
+  EXPECT_LE(scene.indices.size(), 220'000u);
+  ASSERT_TRUE(scene.camera.has_value());
+  EXPECT_EQ(frame_scene(scene, 1.5f).position, scene.camera->position);
+  const glm::vec3 light = scene.light.direction;
+  EXPECT_NEAR(light.x * light.x + light.y * light.y + light.z * light.z, 1, 1e-5);
+}
+
+class GeneratedCount : public testing::TestWithParam<std::uint32_t> {};
+
+TEST_P(GeneratedCount, ScatterIsExact) {
+  const Scene scene = make_scatter(GetParam());
+  EXPECT_EQ(scene.indices.size(), GetParam());
+  expect_consistent(scene);
+  EXPECT_EQ(count_inactive(scene), 0u);
+}
+
+TEST_P(GeneratedCount, TerrainIsExact) {
+  const Scene scene = make_terrain(GetParam());
+  EXPECT_EQ(scene.indices.size(), GetParam());
+  expect_consistent(scene);
+  EXPECT_EQ(count_inactive(scene), 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Sizes, GeneratedCount,
+                         testing::Values(0, 1, 2, 3, 4, 5, 7, 31, 32, 33, 1000, 4097, 100'003));
+
+TEST(Scatter, IsAFunctionOfCountAndSeed) {
+  EXPECT_TRUE(same_bits(make_scatter(5000, 3), make_scatter(5000, 3)));
+  EXPECT_FALSE(same_bits(make_scatter(5000, 3), make_scatter(5000, 4)));
+}
+
+TEST(Terrain, IsConnected) {
+  const Scene scene = make_terrain(2000);
+  EXPECT_LT(scene.positions.size(), 1200u);
+}
+
+class EveryHardCase : public testing::TestWithParam<HardCase> {};
+
+TEST_P(EveryHardCase, HasExactlyTheTrianglesAskedFor) {
+  const HardCase hard_case = GetParam();
+  for (const std::uint32_t count : {0u, 1u, 2u, 3u, 257u, hard_case.default_triangle_count}) {
+    const Scene scene = hard_case.make(count, 1);
+    EXPECT_EQ(scene.indices.size(), count);
+    expect_consistent(scene);
+  }
+}
+
+TEST_P(EveryHardCase, IsTheSameEveryTime) {
+  EXPECT_TRUE(same_bits(GetParam().make(1000, 7), GetParam().make(1000, 7)));
+}
+
+TEST_P(EveryHardCase, HasAUsableCamera) { expect_usable_camera(GetParam().make(1000, 1)); }
+
+std::string case_name(const testing::TestParamInfo<HardCase>& info) {
+  std::string name(info.param.name);
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+INSTANTIATE_TEST_SUITE_P(All, EveryHardCase, testing::ValuesIn(hard_cases().begin(), hard_cases().end()),
+                         case_name);
+
+TEST(HardCases, NonFiniteCountsAreAsDescribed) {
+  EXPECT_EQ(count_inactive(find_hard_case("non-finite")->make(1000, 1)), 334u);
+  EXPECT_EQ(count_inactive(find_hard_case("all-non-finite")->make(100, 1)), 100u);
+  EXPECT_EQ(count_inactive(find_hard_case("huge")->make(1000, 1)), 0u);
+  EXPECT_EQ(find_hard_case("no such case"), nullptr);
+}
+
+TEST(HardCases, NestedBoxesShareTheirCentre) {
+  const Scene scene = find_hard_case("nested")->make(300, 1);
+  for (const glm::uvec3 t : scene.indices) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto [low, high] =
+          std::minmax({scene.positions[t.x][axis], scene.positions[t.y][axis], scene.positions[t.z][axis]});
+      ASSERT_EQ(low + high, 0.0f);
+    }
+  }
+}
+
+// Half the surface area of the union of the boxes of two triangles, in float as a builder computes it.
+float union_area(const Scene& scene, std::uint32_t i, std::uint32_t j) {
+  glm::vec3 low{std::numeric_limits<float>::max()}, high{std::numeric_limits<float>::lowest()};
+  for (const std::uint32_t triangle : {i, j}) {
+    for (int corner = 0; corner < 3; ++corner) {
+      const glm::vec3 p = scene.positions[scene.indices[triangle][corner]];
+      low = glm::min(low, p), high = glm::max(high, p);
+    }
+  }
+  const glm::vec3 size = high - low;
+  return size.x * size.y + size.y * size.z + size.z * size.x;
+}
+
+TEST(HardCases, EachOfTheShrinkingGapsPrefersTheNext) {
+  const Scene scene = find_hard_case("shrinking-gaps")->make(1'000'000, 1);
+  for (std::uint32_t i = 0; i + 2 < scene.indices.size(); ++i) {
+    const float to_next = union_area(scene, i, i + 1);
+    ASSERT_GT(to_next, union_area(scene, i + 1, i + 2)) << i;  // so i + 1 prefers i + 2 to i
+    ASSERT_LT(to_next, union_area(scene, i, i + 2)) << i;      // and i prefers i + 1 to i + 2
+  }
+}
+
+TEST(FrameScene, SeesEveryCornerOfTheScene) {
+  const Scene scene = one_triangle({-3, 0, 0}, {5, 1, 2}, {0, 7, -4});
+  for (const float aspect : {0.5f, 1.0f, 2.0f}) {
+    const Camera camera = frame_scene(scene, aspect);
+    const glm::vec3 forward = glm::normalize(camera.target - camera.position);
+    const glm::vec3 right = glm::normalize(glm::cross(forward, camera.up)), up = glm::cross(right, forward);
+    const float tan_y = std::tan(glm::radians(camera.vertical_fov_degrees) / 2);
+    for (const glm::vec3 p : scene.positions) {
+      const glm::vec3 d = p - camera.position;
+      const float depth = glm::dot(d, forward);
+      EXPECT_GT(depth, 0);
+      EXPECT_LT(std::abs(glm::dot(d, up)), depth * tan_y);
+      EXPECT_LT(std::abs(glm::dot(d, right)), depth * tan_y * aspect);
+    }
+  }
+}
+
+TEST(FrameScene, WorksWithoutAnythingToSee) {
+  constexpr float MAX = std::numeric_limits<float>::max();
+  constexpr float LEAST = std::numeric_limits<float>::denorm_min();
+  expect_usable_camera(Scene{});
+  expect_usable_camera(one_triangle({0, 0, 0}, {0, 0, 0}, {0, 0, 0}));
+  expect_usable_camera(one_triangle({1e6f, 1, 1}, {1e6f, 1, 1}, {1e6f, 1, 1}));
+  expect_usable_camera(one_triangle(glm::vec3{MAX}, glm::vec3{MAX}, glm::vec3{MAX}));
+  expect_usable_camera(one_triangle(glm::vec3{-MAX}, glm::vec3{MAX}, glm::vec3{0}));
+  expect_usable_camera(one_triangle(glm::vec3{LEAST}, glm::vec3{0}, glm::vec3{-LEAST}));
+  expect_usable_camera(one_triangle({NAN, 0, 0}, {0, INFINITY, 0}, {0, 0, 0}));
+}
+
+TEST(FrameScene, IgnoresInactiveTriangles) {
+  Scene scene = one_triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  const Camera expected = frame_scene(scene, 1);
+  scene.positions.insert(scene.positions.end(), {{900, 900, 900}, {NAN, 0, 0}, {1, 2, 3}});
+  scene.indices.emplace_back(3, 4, 5);
+  scene.material_index.push_back(0);
+  EXPECT_EQ(frame_scene(scene, 1).position, expected.position);
+}
+
+std::string error_of(const std::string& spec) {
+  try {
+    open_scene(spec);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(OpenScene, OpensEverythingThatIsListed) {
+  const std::vector<SceneListing> listings = list_scenes();
+  ASSERT_FALSE(listings.empty());
+  EXPECT_EQ(listings[0].name, "grove");
+  for (const SceneListing& listing : listings) {
+    const Scene scene = open_scene(listing.name);
+    EXPECT_EQ(scene.indices.size(), listing.triangles) << listing.name;
+    EXPECT_FALSE(scene.name.empty());
+    EXPECT_FALSE(listing.description.empty());
+    if (!listing.takes_count) continue;
+    EXPECT_EQ(open_scene(listing.name + ":12").indices.size(), 12u) << listing.name;
+  }
+}
+
+TEST(OpenScene, NamesTheSceneWithItsSize) {
+  EXPECT_EQ(open_scene("scatter:12").name, "scatter:12");
+  EXPECT_EQ(open_scene("hard:far:12").name, "hard:far:12");
+}
+
+TEST(OpenScene, OpensAFile) {
+  const auto path = std::filesystem::path(testing::TempDir()) / "coppice_open_scene.OBJ";
+  std::ofstream(path) << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  EXPECT_EQ(open_scene(path.string()).indices.size(), 1u);
+  std::filesystem::remove(path);
+}
+
+TEST(OpenScene, AnUnknownNameIsAnError) {
+  EXPECT_EQ(error_of("foo"),
+            "unknown scene 'foo': neither a file nor a built-in scene (see 'coppice scenes')");
+  EXPECT_EQ(error_of(""), "unknown scene '': neither a file nor a built-in scene (see 'coppice scenes')");
+  EXPECT_TRUE(error_of("hard:foo").starts_with("unknown hard case 'foo': there are coincident, "));
+  EXPECT_TRUE(error_of("hard:").starts_with("unknown hard case ''"));
+}
+
+TEST(OpenScene, ACountThatIsNoneIsAnError) {
+  for (const std::string count : {"0", "-1", "x", "", "1.5", "12x", "67108865", "99999999999"}) {
+    for (const std::string name : {"scatter", "terrain", "hard:nested"}) {
+      EXPECT_EQ(error_of(name + ":" + count), "scene '" + name + ":" + count + "': '" + count +
+                                                  "' is no number of triangles from 1 to 67108864");
+    }
+  }
+  EXPECT_NE(error_of("grove:5"), "");
+}
+
+TEST(OpenScene, AFileThatIsNoSceneIsAnError) {
+  EXPECT_EQ(error_of("none.obj"), "none.obj: no such file");
+  EXPECT_EQ(error_of("none.ply"), "none.ply: no such file");
+  EXPECT_EQ(error_of("none/none"), "none/none: no such file");
+  const std::filesystem::path folder = testing::TempDir();
+  EXPECT_EQ(error_of(folder.string()), folder.string() + ": is a directory, not a scene file");
+  const auto path = folder / "coppice_open_scene.ply";
+  std::ofstream(path) << "ply\n";
+  EXPECT_EQ(error_of(path.string()), path.string() + ": unknown extension '.ply', scene files end in .obj");
+  std::filesystem::remove(path);
+}
+
+}  // namespace
+}  // namespace coppice
