@@ -21,28 +21,42 @@ uint interleave(uvec3 cell) {
   return (spread(cell.x) << 2) | (spread(cell.y) << 1) | spread(cell.z);
 }
 
-uvec3 grid_cell(Aabb box, BuildState state, uint bits) {
+struct Grid {
+  Normalisation normalisation;
+  vec3 origin;
+  float scale;  // cells a normalised unit; 0 where all boxes are at one point
+};
+
+Grid scene_grid(BuildState state, uint bits) {
   Normalisation normalisation = scene_normalisation(state);
   vec3 origin = normalised(scene_box_min(state), normalisation);
   precise vec3 extent = normalised(scene_box_max(state), normalisation) - origin;
   float largest = max(max(extent.x, extent.y), extent.z);
-  if (largest == 0.0) return uvec3(0u);
-  precise vec3 centre =
-      (normalised(box.box_min, normalisation) + normalised(box.box_max, normalisation)) * 0.5;
-  precise vec3 cell = (centre - origin) * power_of_two(int(bits) + 126 - biased_exponent(largest));
+  float scale = largest == 0.0 ? 0.0 : power_of_two(int(bits) + 126 - biased_exponent(largest));
+  return Grid(normalisation, origin, scale);
+}
+
+uvec3 grid_cell(Aabb box, Grid grid) {
+  precise vec3 centre = (normalised(box.box_min, grid.normalisation) + normalised(box.box_max, grid.normalisation)) * 0.5;
+  precise vec3 cell = (centre - grid.origin) * grid.scale;
   return uvec3(cell);
 }
 
+bool is_empty(Aabb box) { return box.box_min.x > box.box_max.x; }
+
 void main() {
-  uint i = gl_GlobalInvocationID.x;
-  if (i >= args.triangle_count) return;
-  args.values.at[i] = i;
-  Aabb box = args.boxes.at[i];
-  if (box.box_min.x > box.box_max.x) {
-    for (uint word = 0u; word < args.key_words; ++word) args.keys.at[i * args.key_words + word] = MORTON_INACTIVE;
-    return;
+  Grid grid = scene_grid(args.state.at[0], 10u * args.key_words);
+  uint first = gl_WorkGroupID.x * MORTON_TILE + gl_LocalInvocationIndex;
+  uint last = min((gl_WorkGroupID.x + 1u) * MORTON_TILE, args.triangle_count);
+  [[dont_unroll]] for (uint i = first; i < last; i += MORTON_GROUP) {
+    Aabb box = args.boxes.at[i];
+    uvec2 key = uvec2(MORTON_INACTIVE);
+    if (!is_empty(box)) {
+      uvec3 cell = grid_cell(box, grid);
+      key = uvec2(interleave(cell & 1023u), interleave(cell >> 10));
+    }
+    args.keys.at[i * args.key_words] = key.x;
+    if (args.key_words == 2u) args.keys.at[i * 2u + 1u] = key.y;
+    args.values.at[i] = i;
   }
-  uvec3 cell = grid_cell(box, args.state.at[0], 10u * args.key_words);
-  args.keys.at[i * args.key_words] = interleave(cell & 1023u);
-  if (args.key_words == 2u) args.keys.at[i * 2u + 1u] = interleave(cell >> 10);
 }

@@ -8,11 +8,13 @@ layout(local_size_x = PLOC_LEAVES_GROUP) in;
 layout(push_constant, scalar) uniform Push { PlocLeavesArgs args; };
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
   uint active_count = args.state.at[0].active_count;
-  if (i == 0u) args.rounds.at[0] = planned_round(active_count, 0u, false);
-  if (i >= active_count) return;
-  uint triangle = args.values.at[i];
-  Aabb box = args.boxes.at[triangle];
-  args.clusters.at[i] = Node(box.box_min, triangle, box.box_max, 0u);
+  if (gl_GlobalInvocationID.x == 0u) args.rounds.at[0] = planned_round(active_count, 0u, false);
+  uint first = gl_WorkGroupID.x * PLOC_LEAVES_TILE + gl_LocalInvocationIndex;
+  uint last = min((gl_WorkGroupID.x + 1u) * PLOC_LEAVES_TILE, active_count);
+  [[dont_unroll]] for (uint i = first; i < last; i += PLOC_LEAVES_GROUP) {
+    uint triangle = args.values.at[i];
+    Aabb box = args.boxes.at[triangle];
+    args.clusters.at[i] = Node(box.box_min, triangle, box.box_max, 0u);
+  }
 }

@@ -7,6 +7,7 @@
 
 layout(local_size_x = SHADE_GROUP) in;
 layout(push_constant, scalar) uniform Push { ShadeArgs args; };
+layout(constant_id = 0) const uint SHADE_DIRECTIONAL_LIGHT = 1u;  // 0 where the scene has none
 
 // Divided by the largest component first: squares of large coordinates overflow, of small ones vanish.
 vec3 unit(vec3 v) {
@@ -25,13 +26,14 @@ vec3 sky(vec3 direction, Lighting lighting) {
 }
 
 vec3 surface(Ray ray, uint index, Lighting lighting) {
+  SurfaceMaterial material = args.materials.at[args.material_index.at[index]];
+  if (SHADE_DIRECTIONAL_LIGHT == 0u) return material.ambient;
   Triangle triangle = args.triangles.at[index];
   precise vec3 edge_b = triangle.b - triangle.a;
   precise vec3 edge_c = triangle.c - triangle.a;
   vec3 normal = unit(exact_cross(unit(edge_b), unit(edge_c)));
   float side = exact_dot(normal, ray.direction) > 0.0 ? -1.0 : 1.0;
   float cosine = max(exact_dot(normal, lighting.light_direction) * side, 0.0);
-  SurfaceMaterial material = args.materials.at[args.material_index.at[index]];
   precise vec3 colour = material.ambient + material.diffuse * cosine;
   return colour;
 }

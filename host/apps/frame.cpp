@@ -1,6 +1,7 @@
 #include "apps/frame.h"
 
 #include <cmath>
+#include <cstdio>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 #include <glm/vec3.hpp>
@@ -34,6 +35,10 @@ SceneArrays scene_arrays(const Scene& scene) {
   }
   arrays.lighting = {scene.light.direction, 0, vec3(0.80f, 0.87f, 0.94f), 0, vec3(0.24f, 0.45f, 0.78f), 0};
   return arrays;
+}
+
+void print_warnings(const Scene& scene) {
+  for (const std::string& warning : scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
 }
 
 Film make_film(const Camera& camera, std::uint32_t width, std::uint32_t height, std::uint32_t samples) {

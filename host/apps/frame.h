@@ -17,12 +17,15 @@ struct SceneArrays {
 
 SceneArrays scene_arrays(const Scene& scene);
 
+// The scene's warnings, a line each, to stderr.
+void print_warnings(const Scene& scene);
+
 Film make_film(const Camera& camera, std::uint32_t width, std::uint32_t height, std::uint32_t samples);
 
 // Uploads all that a build and a trace read, through any executor.
 template <class Executor>
-void upload_frame(Executor& executor, const BuildPlan& build, const TracePlan& trace, const SceneArrays& scene,
-                  const Film& film) {
+void upload_frame(Executor& executor, const BuildPlan& build, const TracePlan& trace,
+                  const SceneArrays& scene, const Film& film) {
   const auto thresholds = srgb_thresholds();
   executor.upload(build.triangles, std::span<const Triangle>(scene.triangles));
   executor.upload(trace.material_index, std::span<const uint>(scene.material_index));

@@ -1,1 +1,129 @@
-int main() {}
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "apps/options.h"
+#include "interface/ploc.h"
+
+namespace {
+
+using coppice::Options;
+
+constexpr std::uint32_t max_side = 16384;
+
+// "1024x768" into width and height, each 1 to max_side.
+std::string parse_size(Options& options) {
+  if (options.size.empty()) return {};
+  const char* const end = options.size.data() + options.size.size();
+  auto [middle, first_error] = std::from_chars(options.size.data(), end, options.width);
+  const bool first = first_error == std::errc() && middle != end && *middle == 'x';
+  const auto [last, second_error] =
+      first ? std::from_chars(middle + 1, end, options.height) : std::from_chars_result{};
+  const bool parsed = first && second_error == std::errc() && last == end;
+  const auto in_range = [](std::uint32_t side) { return side >= 1 && side <= max_side; };
+  if (parsed && in_range(options.width) && in_range(options.height)) return {};
+  return "--size: '" + options.size + "' is not WxH with sides of 1 to " + std::to_string(max_side);
+}
+
+void add_common(CLI::App& command, Options& options) {
+  command.add_option("--json", options.json, "write what was measured to FILE, - for stdout")
+      ->type_name("FILE");
+}
+
+void add_device(CLI::App& command, Options& options) {
+  command.add_option("--device", options.device, "part of a device's name, or its index")
+      ->type_name("NAME|INDEX");
+  command.add_flag("--validate", options.validate, "Vulkan validation layers on; a message is a failure");
+  command.add_option("--trace-events", options.trace_events, "write every kernel as a Chrome trace event")
+      ->type_name("FILE");
+}
+
+void add_scene(CLI::App& command, Options& options) {
+  command.add_option("SCENE", options.scene, "an .obj file or a built-in scene")->capture_default_str();
+}
+
+void add_builder(CLI::App& command, Options& options) {
+  command.add_option("--builder", options.builder)
+      ->check(CLI::IsMember({"none", "ploc", "gpu-ploc"}))
+      ->capture_default_str();
+}
+
+void add_ploc(CLI::App& command, Options& options) {
+  command.add_option("--radius", options.radius, "search radius of PLOC")
+      ->check(CLI::Range(1u, coppice::PLOC_MAX_RADIUS))
+      ->capture_default_str();
+  command.add_option("--morton-bits", options.morton_bits)
+      ->check(CLI::IsMember({30u, 60u}))
+      ->capture_default_str();
+  command
+      .add_option("--lookback", options.lookback,
+                  "prefix sums by decoupled lookback; auto: where the self-check allows it")
+      ->check(CLI::IsMember({"auto", "on", "off"}))
+      ->capture_default_str();
+}
+
+void add_picture(CLI::App& command, Options& options) {
+  command.add_option("--size", options.size, "pixels, default 1024x768")->type_name("WxH");
+  command.add_option("--spp", options.samples, "samples per pixel")
+      ->check(CLI::Range(1u, 65536u))
+      ->capture_default_str();
+}
+
+int run(int argc, char** argv) {
+  Options options;
+  CLI::App app("GPU-resident BVH builder and ray tracer");
+  app.require_subcommand(1);
+  app.set_help_all_flag("--help-all", "Help of all commands");
+
+  CLI::App* const render = app.add_subcommand("render", "build, trace, write the picture");
+  render->add_option("-o,--output", options.output)->capture_default_str();
+  render->add_option("--tracer", options.tracer)->check(CLI::IsMember({"gpu", "cpu"}))->capture_default_str();
+  add_picture(*render, options);
+  CLI::App* const build =
+      app.add_subcommand("build", "build only: time of every kernel, quality of the tree");
+  build->add_option("--runs", options.runs, "after a warm-up")
+      ->check(CLI::Range(1u, 10000u))
+      ->capture_default_str();
+  CLI::App* const lockstep =
+      app.add_subcommand("lockstep", "every stage on device and CPU; the first difference, or none");
+  add_picture(*lockstep, options);
+  for (CLI::App* const command : {render, build}) add_builder(*command, options);
+  for (CLI::App* const command : {render, build, lockstep}) {
+    add_scene(*command, options);
+    add_ploc(*command, options);
+    add_device(*command, options);
+  }
+  CLI::App* const scenes = app.add_subcommand("scenes", "the built-in scenes");
+  CLI::App* const devices = app.add_subcommand("devices", "the Vulkan devices");
+  for (CLI::App* const command : {render, build, lockstep, scenes, devices}) add_common(*command, options);
+
+  try {
+    app.parse(argc, argv);
+    if (const std::string error = parse_size(options); !error.empty()) throw CLI::ValidationError(error);
+  } catch (const CLI::Success& help) {
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    std::fprintf(stderr, "coppice: %s\n", error.what());
+    return 2;
+  }
+  if (*render) return run_render(options);
+  if (*build) return run_build(options);
+  if (*lockstep) return run_lockstep(options);
+  if (*scenes) return run_scenes(options);
+  return run_devices(options);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "coppice: out of memory\n");
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "coppice: %s\n", error.what());
+  }
+  return 1;
+}

@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::uint64_t staging_bytes = std::uint64_t{16} << 20;
 
-Buffer make_buffer(VulkanContext& context, std::uint64_t bytes, vk::BufferUsageFlags usage, vk::MemoryPropertyFlags flags) {
+Buffer make_buffer(VulkanContext& context, std::uint64_t bytes, vk::BufferUsageFlags usage,
+                   vk::MemoryPropertyFlags flags) {
   Buffer result;
   try {
     result.buffer = vk::raii::Buffer(context.device, {{}, bytes, usage, vk::SharingMode::eExclusive});
@@ -29,7 +30,8 @@ Buffer make_buffer(VulkanContext& context, std::uint64_t bytes, vk::BufferUsageF
   } catch (const vk::OutOfDeviceMemoryError&) {
     throw DeviceError("out of memory: the device has no " + std::to_string(bytes) + " bytes left");
   } catch (const vk::OutOfHostMemoryError&) {
-    throw DeviceError("out of memory: the host has no " + std::to_string(bytes) + " bytes left for the device");
+    throw DeviceError("out of memory: the host has no " + std::to_string(bytes) +
+                      " bytes left for the device");
   }
   return result;
 }
@@ -39,11 +41,13 @@ Buffer make_buffer(VulkanContext& context, std::uint64_t bytes, vk::BufferUsageF
 void wait_for(const VulkanContext& context, const vk::raii::Fence& fence, double limit_seconds) {
   const auto limit_ns = static_cast<std::uint64_t>(limit_seconds * 1e9);
   if (context.device.waitForFences(*fence, true, limit_ns) == vk::Result::eTimeout) {
-    throw DeviceError("the device did not finish within " + std::to_string(static_cast<int>(limit_seconds)) + " s");
+    throw DeviceError("the device did not finish within " + std::to_string(static_cast<int>(limit_seconds)) +
+                      " s");
   }
 }
 
-Arena::Arena(Device& device, const std::vector<std::uint64_t>& block_bytes) : blocks_(std::make_unique<Blocks>()) {
+Arena::Arena(Device& device, const std::vector<std::uint64_t>& block_bytes)
+    : blocks_(std::make_unique<Blocks>()) {
   using Usage = vk::BufferUsageFlagBits;
   using Memory = vk::MemoryPropertyFlagBits;
   VulkanContext& context = device.context();

@@ -10,7 +10,8 @@
 
 namespace coppice {
 
-// Blocks of device memory with an address, zero at the start. Copies from and to them are complete when they return.
+// Blocks of device memory with an address, zero at the start. Copies from and to them are complete when they
+// return.
 class Arena {
  public:
   // Throws DeviceError, naming the size, when the device's memory is used up.

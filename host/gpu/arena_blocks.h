@@ -29,9 +29,9 @@ void wait_for(const VulkanContext& context, const vk::raii::Fence& fence, double
 
 template <class Record>
 void run_commands(VulkanContext& context, Record record) {
-  auto commands = std::move(vk::raii::CommandBuffers(
-                                context.device, {*context.command_pool, vk::CommandBufferLevel::ePrimary, 1})
-                                .front());
+  auto commands = std::move(
+      vk::raii::CommandBuffers(context.device, {*context.command_pool, vk::CommandBufferLevel::ePrimary, 1})
+          .front());
   commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
   record(commands);
   commands.end();

@@ -27,7 +27,8 @@ DeviceType device_type(vk::PhysicalDeviceType type) {
   }
 }
 
-VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT,
+                                          VkDebugUtilsMessageTypeFlagsEXT,
                                           const VkDebugUtilsMessengerCallbackDataEXT* message, void* user) {
   auto& context = *static_cast<VulkanContext*>(user);
   const std::lock_guard lock(context.message_mutex);
@@ -38,12 +39,14 @@ VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT
 vk::raii::Instance make_instance(const vk::raii::Context& loader, bool validate) {
   const vk::ApplicationInfo application("coppice", 1, "coppice", 1, VK_API_VERSION_1_3);
   std::vector<const char*> layers, extensions;
-  const vk::ValidationFeatureEnableEXT enabled[] = {vk::ValidationFeatureEnableEXT::eSynchronizationValidation};
+  const vk::ValidationFeatureEnableEXT enabled[] = {
+      vk::ValidationFeatureEnableEXT::eSynchronizationValidation};
   const vk::ValidationFeaturesEXT features(enabled);
   vk::InstanceCreateInfo info({}, &application);
   if (validate) {
     const auto available = loader.enumerateInstanceLayerProperties();
-    if (std::ranges::none_of(available, [](const auto& layer) { return !std::strcmp(layer.layerName, validation_layer); })) {
+    if (std::ranges::none_of(
+            available, [](const auto& layer) { return !std::strcmp(layer.layerName, validation_layer); })) {
       throw DeviceError(std::string("--validate: the layer ") + validation_layer + " is not installed");
     }
     layers.push_back(validation_layer);
@@ -54,8 +57,8 @@ vk::raii::Instance make_instance(const vk::raii::Context& loader, bool validate)
   return vk::raii::Instance(loader, info);
 }
 
-using FeatureChain =
-    vk::StructureChain<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features, vk::PhysicalDeviceVulkan13Features>;
+using FeatureChain = vk::StructureChain<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features,
+                                        vk::PhysicalDeviceVulkan13Features>;
 
 // What the kernels need, one line a feature.
 template <class Visit>
@@ -72,7 +75,8 @@ void for_each_feature(FeatureChain& chain, Visit visit) {
 }
 
 std::string why_unsuitable(const vk::raii::PhysicalDevice& physical) {
-  const auto properties = physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties>();
+  const auto properties =
+      physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties>();
   const auto& core = properties.get<vk::PhysicalDeviceProperties2>().properties;
   if (core.apiVersion < VK_API_VERSION_1_3) return "no Vulkan 1.3";
   const auto& subgroups = properties.get<vk::PhysicalDeviceVulkan11Properties>();
@@ -92,10 +96,12 @@ std::string why_unsuitable(const vk::raii::PhysicalDevice& physical) {
 }
 
 DeviceListing listing_of(const vk::raii::PhysicalDevice& physical, std::uint32_t index) {
-  const auto properties = physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>();
+  const auto properties =
+      physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>();
   const auto& core = properties.get<vk::PhysicalDeviceProperties2>().properties;
   const auto& driver = properties.get<vk::PhysicalDeviceDriverProperties>();
-  return {index, core.deviceName.data(), driver.driverInfo.data(), device_type(core.deviceType), why_unsuitable(physical)};
+  return {index, core.deviceName.data(), driver.driverInfo.data(), device_type(core.deviceType),
+          why_unsuitable(physical)};
 }
 
 std::uint32_t choose_device(const std::vector<DeviceListing>& devices, const std::string& select) {
@@ -121,14 +127,16 @@ std::uint32_t known_loop_limit(const vk::PhysicalDeviceDriverProperties& driver)
   if (driver.driverID != vk::DriverId::eMesaLlvmpipe) return 0;
   int major = 0;
   const std::string_view version = driver.driverInfo.data();
-  if (version.starts_with("Mesa ")) std::from_chars(version.data() + 5, version.data() + version.size(), major);
+  if (version.starts_with("Mesa "))
+    std::from_chars(version.data() + 5, version.data() + version.size(), major);
   return major < 25 ? 65535 : 0;
 }
 
 DeviceProperties describe(const VulkanContext& context, std::uint32_t timestamp_bits) {
   const auto chain =
-      context.physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties,
-                                      vk::PhysicalDeviceVulkan13Properties, vk::PhysicalDeviceDriverProperties>();
+      context.physical
+          .getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties,
+                          vk::PhysicalDeviceVulkan13Properties, vk::PhysicalDeviceDriverProperties>();
   const auto& core = chain.get<vk::PhysicalDeviceProperties2>().properties;
   const auto& driver = chain.get<vk::PhysicalDeviceDriverProperties>();
   DeviceProperties properties;
@@ -136,17 +144,20 @@ DeviceProperties describe(const VulkanContext& context, std::uint32_t timestamp_
   properties.driver = driver.driverInfo.data();
   properties.type = device_type(core.deviceType);
   properties.subgroup_size = chain.get<vk::PhysicalDeviceVulkan11Properties>().subgroupSize;
-  properties.max_block_bytes = std::min<std::uint64_t>(chain.get<vk::PhysicalDeviceVulkan11Properties>().maxMemoryAllocationSize,
-                                                       chain.get<vk::PhysicalDeviceVulkan13Properties>().maxBufferSize);
+  properties.max_block_bytes =
+      std::min<std::uint64_t>(chain.get<vk::PhysicalDeviceVulkan11Properties>().maxMemoryAllocationSize,
+                              chain.get<vk::PhysicalDeviceVulkan13Properties>().maxBufferSize);
   properties.timestamp_period_ns = timestamp_bits ? core.limits.timestampPeriod : 0.0;
-  properties.shared_memory = !context.force_staging && (properties.type == DeviceType::cpu || properties.type == DeviceType::integrated);
+  properties.shared_memory = !context.force_staging && (properties.type == DeviceType::cpu ||
+                                                        properties.type == DeviceType::integrated);
   properties.loop_turn_limit = known_loop_limit(driver);
   return properties;
 }
 
 void make_device(VulkanContext& context) {
   const auto families = context.physical.getQueueFamilyProperties();
-  const auto family = std::ranges::find_if(families, [](const auto& f) { return bool(f.queueFlags & vk::QueueFlagBits::eCompute); });
+  const auto family = std::ranges::find_if(
+      families, [](const auto& f) { return bool(f.queueFlags & vk::QueueFlagBits::eCompute); });
   if (family == families.end()) throw DeviceError("device without a compute queue");
   context.queue_family = static_cast<std::uint32_t>(family - families.begin());
 
@@ -160,7 +171,8 @@ void make_device(VulkanContext& context) {
   context.queue = context.device.getQueue(context.queue_family, 0);
   context.command_pool = vk::raii::CommandPool(context.device, {{}, context.queue_family});
   const vk::PushConstantRange push(vk::ShaderStageFlagBits::eCompute, 0, 128);
-  context.pipeline_layout = vk::raii::PipelineLayout(context.device, vk::PipelineLayoutCreateInfo({}, {}, push));
+  context.pipeline_layout =
+      vk::raii::PipelineLayout(context.device, vk::PipelineLayoutCreateInfo({}, {}, push));
   context.properties = describe(context, family->timestampValidBits);
 }
 
@@ -201,13 +213,18 @@ Device::Device(const DeviceOptions& options) : context_(std::make_unique<VulkanC
     if (options.validate) {
       using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
       using Type = vk::DebugUtilsMessageTypeFlagBitsEXT;
-      context.messenger = vk::raii::DebugUtilsMessengerEXT(
-          context.instance, {{}, Severity::eWarning | Severity::eError, Type::eValidation | Type::ePerformance, on_message, &context});
+      context.messenger =
+          vk::raii::DebugUtilsMessengerEXT(context.instance, {{},
+                                                              Severity::eWarning | Severity::eError,
+                                                              Type::eValidation | Type::ePerformance,
+                                                              on_message,
+                                                              &context});
       context.labels = true;
     }
     vk::raii::PhysicalDevices all(context.instance);
     std::vector<DeviceListing> listings;
-    for (const auto& physical : all) listings.push_back(listing_of(physical, static_cast<std::uint32_t>(listings.size())));
+    for (const auto& physical : all)
+      listings.push_back(listing_of(physical, static_cast<std::uint32_t>(listings.size())));
     context.physical = std::move(all[choose_device(listings, options.select)]);
     make_device(context);
   } catch (const vk::SystemError& error) {

@@ -24,12 +24,13 @@ struct DeviceListing {
   std::string unsuitable_because;  // empty for a device that can be used
 };
 
-// All devices of the machine, suitable or not, in the loader's order. Empty without a Vulkan loader or driver.
+// All devices of the machine, suitable or not, in the loader's order. Empty without a Vulkan loader or
+// driver.
 std::vector<DeviceListing> list_devices();
 
 struct DeviceOptions {
-  std::string select;         // part of a name or an index; empty: discrete before integrated before CPU
-  bool validate = false;      // validation layers, synchronization validation included
+  std::string select;          // part of a name or an index; empty: discrete before integrated before CPU
+  bool validate = false;       // validation layers, synchronization validation included
   bool force_staging = false;  // copy through staging buffers even where memory is shared (for tests)
 };
 

@@ -19,17 +19,21 @@ std::uint32_t local_size_x(std::span<const std::uint32_t> spirv) {
 }
 
 vk::raii::Pipeline make_pipeline(const VulkanContext& context, const Kernel& kernel) {
-  const vk::raii::ShaderModule module(context.device, vk::ShaderModuleCreateInfo({}, kernel.spirv.size_bytes(), kernel.spirv.data()));
+  const vk::raii::ShaderModule module(
+      context.device, vk::ShaderModuleCreateInfo({}, kernel.spirv.size_bytes(), kernel.spirv.data()));
   std::vector<vk::SpecializationMapEntry> entries;
   for (std::uint32_t id = 0; id < kernel.specialization.size(); ++id) entries.emplace_back(id, id * 4, 4);
   const vk::SpecializationInfo specialization(static_cast<std::uint32_t>(entries.size()), entries.data(),
-                                              kernel.specialization.size_bytes(), kernel.specialization.data());
+                                              kernel.specialization.size_bytes(),
+                                              kernel.specialization.data());
   // Kernels that rank by subgroup need whole ones; the others have no size that subgroups must divide.
   const bool whole = local_size_x(kernel.spirv) % context.properties.subgroup_size == 0;
   const auto flags = whole ? vk::PipelineShaderStageCreateFlagBits::eRequireFullSubgroups
                            : vk::PipelineShaderStageCreateFlags();
-  const vk::PipelineShaderStageCreateInfo stage(flags, vk::ShaderStageFlagBits::eCompute, *module, "main", &specialization);
-  return vk::raii::Pipeline(context.device, nullptr, vk::ComputePipelineCreateInfo({}, stage, *context.pipeline_layout));
+  const vk::PipelineShaderStageCreateInfo stage(flags, vk::ShaderStageFlagBits::eCompute, *module, "main",
+                                                &specialization);
+  return vk::raii::Pipeline(context.device, nullptr,
+                            vk::ComputePipelineCreateInfo({}, stage, *context.pipeline_layout));
 }
 
 vk::Pipeline pipeline_for(VulkanContext& context, const Kernel& kernel) {
@@ -69,8 +73,8 @@ struct Recorder::Commands {
     const auto stages = Stage::eComputeShader | Stage::eClear;
     const vk::MemoryBarrier2 memory(stages, Access::eShaderStorageWrite | Access::eTransferWrite,
                                     stages | Stage::eDrawIndirect,
-                                    Access::eShaderStorageRead | Access::eShaderStorageWrite | Access::eTransferWrite |
-                                        Access::eIndirectCommandRead);
+                                    Access::eShaderStorageRead | Access::eShaderStorageWrite |
+                                        Access::eTransferWrite | Access::eIndirectCommandRead);
     buffer.pipelineBarrier2(vk::DependencyInfo({}, memory));
   }
 
@@ -86,15 +90,17 @@ struct Recorder::Commands {
 
   void bind(const Kernel& kernel, std::span<const std::byte> push_constants) {
     buffer.bindPipeline(vk::PipelineBindPoint::eCompute, pipeline_for(context, kernel));
-    buffer.pushConstants<std::byte>(*context.pipeline_layout, vk::ShaderStageFlagBits::eCompute, 0,
-                                    {static_cast<std::uint32_t>(push_constants.size()), push_constants.data()});
+    buffer.pushConstants<std::byte>(
+        *context.pipeline_layout, vk::ShaderStageFlagBits::eCompute, 0,
+        {static_cast<std::uint32_t>(push_constants.size()), push_constants.data()});
   }
 
   void end() {
     using Stage = vk::PipelineStageFlagBits2;
-    const vk::MemoryBarrier2 memory(Stage::eComputeShader | Stage::eClear,
-                                    vk::AccessFlagBits2::eShaderStorageWrite | vk::AccessFlagBits2::eTransferWrite,
-                                    Stage::eHost, vk::AccessFlagBits2::eHostRead | vk::AccessFlagBits2::eHostWrite);
+    const vk::MemoryBarrier2 memory(
+        Stage::eComputeShader | Stage::eClear,
+        vk::AccessFlagBits2::eShaderStorageWrite | vk::AccessFlagBits2::eTransferWrite, Stage::eHost,
+        vk::AccessFlagBits2::eHostRead | vk::AccessFlagBits2::eHostWrite);
     stamp();
     buffer.pipelineBarrier2(vk::DependencyInfo({}, memory));
     buffer.end();
@@ -108,8 +114,9 @@ Recorder::Recorder(Device& device, const Arena& arena, std::uint32_t step_limit,
   Commands& c = *commands_;
   c.timestamps = timestamps;
   c.query_limit = 2 * step_limit + 2;
-  c.buffer = std::move(
-      vk::raii::CommandBuffers(c.context.device, {*c.context.command_pool, vk::CommandBufferLevel::ePrimary, 1}).front());
+  c.buffer = std::move(vk::raii::CommandBuffers(
+                           c.context.device, {*c.context.command_pool, vk::CommandBufferLevel::ePrimary, 1})
+                           .front());
   c.buffer.begin(vk::CommandBufferBeginInfo());
   if (c.context.properties.timestamp_period_ns > 0) {
     c.queries = vk::raii::QueryPool(c.context.device, {{}, vk::QueryType::eTimestamp, c.query_limit});
@@ -121,15 +128,16 @@ Recorder::Recorder(Device& device, const Arena& arena, std::uint32_t step_limit,
 Recorder::~Recorder() = default;
 Recorder::Recorder(Recorder&&) noexcept = default;
 
-void Recorder::dispatch(const Kernel& kernel, std::span<const std::byte> push_constants, std::array<std::uint32_t, 3> groups) {
+void Recorder::dispatch(const Kernel& kernel, std::span<const std::byte> push_constants,
+                        std::array<std::uint32_t, 3> groups) {
   commands_->step(kernel.name, [&] {
     commands_->bind(kernel, push_constants);
     commands_->buffer.dispatch(groups[0], groups[1], groups[2]);
   });
 }
 
-void Recorder::dispatch_indirect(const Kernel& kernel, std::span<const std::byte> push_constants, std::uint32_t block,
-                                 std::uint64_t offset) {
+void Recorder::dispatch_indirect(const Kernel& kernel, std::span<const std::byte> push_constants,
+                                 std::uint32_t block, std::uint64_t offset) {
   commands_->step(kernel.name, [&] {
     commands_->bind(kernel, push_constants);
     commands_->buffer.dispatchIndirect(commands_->blocks.buffer(block), offset);
@@ -137,7 +145,8 @@ void Recorder::dispatch_indirect(const Kernel& kernel, std::span<const std::byte
 }
 
 void Recorder::clear(std::uint32_t block, std::uint64_t offset, std::uint64_t bytes) {
-  commands_->step("clear", [&] { commands_->buffer.fillBuffer(commands_->blocks.buffer(block), offset, bytes, 0); });
+  commands_->step("clear",
+                  [&] { commands_->buffer.fillBuffer(commands_->blocks.buffer(block), offset, bytes, 0); });
 }
 
 void Recorder::mark() { commands_->mark_queries.push_back(commands_->stamp()); }
@@ -153,7 +162,8 @@ Recorder::Times Recorder::submit_and_wait(double limit_seconds) {
 
   Times times{wall.count(), wall.count(), {}, {}};
   if (!*c.queries) return times;
-  const auto [result, ticks] = c.queries.getResults<std::uint64_t>(0, c.query_count, c.query_count * 8, 8, vk::QueryResultFlagBits::e64);
+  const auto [result, ticks] = c.queries.getResults<std::uint64_t>(0, c.query_count, c.query_count * 8, 8,
+                                                                   vk::QueryResultFlagBits::e64);
   const auto since = [&](std::uint32_t from, std::uint32_t to) {
     return static_cast<double>(ticks[to] - ticks[from]) * c.context.properties.timestamp_period_ns * 1e-6;
   };

@@ -27,7 +27,8 @@ class Recorder {
   ~Recorder();
   Recorder(Recorder&&) noexcept;
 
-  void dispatch(const Kernel& kernel, std::span<const std::byte> push_constants, std::array<std::uint32_t, 3> groups);
+  void dispatch(const Kernel& kernel, std::span<const std::byte> push_constants,
+                std::array<std::uint32_t, 3> groups);
   void dispatch_indirect(const Kernel& kernel, std::span<const std::byte> push_constants, std::uint32_t block,
                          std::uint64_t offset);
   void clear(std::uint32_t block, std::uint64_t offset, std::uint64_t bytes);
@@ -35,8 +36,8 @@ class Recorder {
   void mark();
 
   struct Times {
-    double total_ms;              // first to last timestamp; of the host clock where the device has none
-    double wall_ms;               // host clock around submit and wait
+    double total_ms;               // first to last timestamp; of the host clock where the device has none
+    double wall_ms;                // host clock around submit and wait
     std::vector<double> marks_ms;  // from the start to each mark, in order
     std::vector<double> steps_ms;  // each step, in order; empty unless Timestamps::every_step
   };

@@ -22,8 +22,9 @@ void append_sort(Chain& chain, const BuildPlan& plan) {
   const std::uint32_t n = plan.triangle_count, key_words = plan.options.morton_bits / 30;
   const std::uint32_t passes = key_words * SORT_PASSES_PER_WORD;
   chain.run(stages::morton_codes,
-            {chain.at(plan.boxes), chain.at(plan.state), chain.at(plan.keys[0]), chain.at(plan.values[0]), n, key_words},
-            tiles(n, MORTON_GROUP));
+            {chain.at(plan.boxes), chain.at(plan.state), chain.at(plan.keys[0]), chain.at(plan.values[0]), n,
+             key_words},
+            tiles(n, MORTON_TILE));
   chain.run(stages::sort_histogram, {chain.at(plan.keys[0]), chain.at(plan.histogram), n, key_words},
             tiles(n, SORT_HISTOGRAM_TILE, key_words));
   chain.run(stages::sort_digit_scan, {chain.at(plan.histogram), passes, 0}, {passes, 1, 1});
@@ -57,11 +58,19 @@ void append_round(Chain& chain, const BuildPlan& plan, std::uint32_t round) {
   const auto groups = [&](std::size_t member) {
     return Place{plan.rounds.place.block, plan.rounds.place.offset + round * sizeof(PlocRound) + member};
   };
-  chain.run_indirect(stages::ploc_nearest,
-                     {in, nearest, status, chain.at(plan.state), chain.at(plan.rounds), round, plan.options.radius},
-                     groups(offsetof(PlocRound, nearest_groups)));
-  const PlocMergeArgs merge{in, out, nearest, status, chain.at(plan.nodes), chain.at(plan.state), chain.at(plan.rounds),
-                            round, plan.options.lookback};
+  chain.run_indirect(
+      stages::ploc_nearest,
+      {in, nearest, status, chain.at(plan.state), chain.at(plan.rounds), round, plan.options.radius},
+      groups(offsetof(PlocRound, nearest_groups)));
+  const PlocMergeArgs merge{in,
+                            out,
+                            nearest,
+                            status,
+                            chain.at(plan.nodes),
+                            chain.at(plan.state),
+                            chain.at(plan.rounds),
+                            round,
+                            plan.options.lookback};
   const Place merge_groups = groups(offsetof(PlocRound, merge_groups));
   if (!plan.options.lookback) {
     chain.run_indirect(stages::ploc_tile_counts, merge, merge_groups);
@@ -75,11 +84,11 @@ void append_ploc(Chain& chain, const BuildPlan& plan) {
   chain.run(stages::ploc_leaves,
             {chain.at(plan.boxes), chain.at(plan.values[0]), chain.at(plan.clusters[0]), chain.at(plan.state),
              chain.at(plan.rounds), plan.triangle_count, 0},
-            tiles(plan.triangle_count, PLOC_LEAVES_GROUP));
+            tiles(plan.triangle_count, PLOC_LEAVES_TILE));
   for (std::uint32_t round = 0; round < plan.recorded_rounds; ++round) append_round(chain, plan, round);
   chain.run(stages::ploc_finish,
-            {chain.at(plan.clusters[0]), chain.at(plan.clusters[1]), chain.at(plan.nodes), chain.at(plan.state),
-             chain.at(plan.rounds), plan.options.radius, plan.rounds_bound},
+            {chain.at(plan.clusters[0]), chain.at(plan.clusters[1]), chain.at(plan.nodes),
+             chain.at(plan.state), chain.at(plan.rounds), plan.options.radius, plan.rounds_bound},
             {1, 1, 1});
 }
 

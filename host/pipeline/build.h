@@ -12,7 +12,7 @@ namespace coppice {
 struct BuildOptions {
   std::uint32_t radius = 16;       // search radius of PLOC, 1 to PLOC_MAX_RADIUS
   std::uint32_t morton_bits = 30;  // 30 or 60
-  bool lookback = true;            // false: sort and compaction by reduce, then scan: no workgroup waits for another
+  bool lookback = true;  // false: sort and compaction by reduce, then scan: no workgroup waits for another
   // How long a tile polls its predecessor before it sums it up itself, in turns of LOOKBACK_POLLS.
   std::uint32_t lookback_turns = 16;
 };
@@ -36,10 +36,14 @@ struct BuildPlan {
   Slot<uint> nearest, round_status;
 };
 
+// The most triangles of a build: Vulkan promises 65,535 workgroups a dispatch.
+inline constexpr std::uint32_t max_triangles = 65535u * PLOC_NEAREST_TILE;
+
 // Rounds of PLOC that reduce `clusters` clusters to at most `target`, at worst; proved in docs/numerics.md.
 std::uint32_t ploc_rounds_bound(std::uint32_t clusters, std::uint32_t target);
 
-// Throws LayoutError if a slot does not fit a block, std::invalid_argument for options out of range.
+// Throws LayoutError if a slot does not fit a block, std::invalid_argument for options out of range or
+// more than max_triangles.
 BuildPlan plan_build(Layout& layout, std::uint32_t triangle_count, const BuildOptions& options);
 
 // Triangles to tree: bounds, Morton codes, sort, PLOC.

@@ -15,7 +15,8 @@ constexpr std::uint32_t max_band_pixels = 1u << 20;
 
 uvec3 groups_of(std::uint32_t count, std::uint32_t group) { return {(count + group - 1) / group, 1, 1}; }
 
-void append_closest_hits(Chain& chain, const BuildPlan& build, const TracePlan& plan, std::uint32_t ray_count) {
+void append_closest_hits(Chain& chain, const BuildPlan& build, const TracePlan& plan,
+                         std::uint32_t ray_count) {
   const uvec3 groups = groups_of(ray_count, TRACE_GROUP);
   const auto triangles = chain.at(build.triangles);
   const auto rays = chain.at(plan.rays);
@@ -23,15 +24,16 @@ void append_closest_hits(Chain& chain, const BuildPlan& build, const TracePlan& 
   const auto counters = chain.at(plan.counters);
   if (!plan.options.brute_force) {
     chain.run(stages::trace_closest,
-              {chain.at(build.nodes), triangles, rays, hits, counters, chain.at(build.state), ray_count, 0}, groups,
-              {plan.options.max_turns, plan.options.visits_per_turn});
+              {chain.at(build.nodes), triangles, rays, hits, counters, chain.at(build.state), ray_count, 0},
+              groups, {plan.options.max_turns, plan.options.visits_per_turn});
     return;
   }
   std::uint32_t first = 0;
   do {
     const std::uint32_t count = std::min(BRUTE_FORCE_SLICE, build.triangle_count - first);
     const bool last = first + count == build.triangle_count;
-    chain.run(stages::trace_brute_force, {triangles, rays, hits, counters, ray_count, first, count, last}, groups);
+    chain.run(stages::trace_brute_force, {triangles, rays, hits, counters, ray_count, first, count, last},
+              groups);
     first += count;
   } while (first < build.triangle_count);
 }
@@ -49,7 +51,8 @@ std::array<uint, 256> srgb_thresholds() {
   return thresholds;
 }
 
-TracePlan plan_trace(Layout& layout, const BuildPlan& build, std::uint32_t material_count, const TraceOptions& options) {
+TracePlan plan_trace(Layout& layout, const BuildPlan& build, std::uint32_t material_count,
+                     const TraceOptions& options) {
   TracePlan plan;
   plan.options = options;
   const std::uint32_t pixels = options.width * options.height;
@@ -82,10 +85,11 @@ void append_trace(Chain& chain, const BuildPlan& build, const TracePlan& plan) {
       chain.run(stages::shade,
                 {chain.at(build.triangles), chain.at(plan.material_index), chain.at(plan.materials),
                  chain.at(plan.lighting), rays, hits, radiance, count, sample},
-                groups_of(count, SHADE_GROUP));
+                groups_of(count, SHADE_GROUP), {plan.options.directional_light});
     }
     chain.run(stages::resolve,
-              {radiance, chain.at(plan.srgb_thresholds), chain.at(plan.image), first, count, plan.options.samples, 0},
+              {radiance, chain.at(plan.srgb_thresholds), chain.at(plan.image), first, count,
+               plan.options.samples, 0},
               groups_of(count, RESOLVE_GROUP));
   }
 }

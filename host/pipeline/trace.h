@@ -12,10 +12,11 @@ struct TraceOptions {
   std::uint32_t width = 1024, height = 768;  // pixels
   std::uint32_t samples = 1;                 // per pixel
   bool brute_force = false;                  // test every triangle instead of walking the tree
-  // Turns of the traversal loop and pairs of nodes it visits a turn; fewer turns than nodes only where a driver ends
-  // long loops by itself.
+  // Turns of the traversal loop and pairs of nodes it visits a turn; fewer turns than nodes only where a
+  // driver ends long loops by itself.
   std::uint32_t max_turns = 0xffffffffu;
   std::uint32_t visits_per_turn = 1;
+  bool directional_light = true;  // what the scene calls for
 };
 
 // Where a trace keeps what, beside the build whose tree it walks.
@@ -23,13 +24,13 @@ struct TracePlan {
   TraceOptions options;
   std::uint32_t band_pixels;  // the image is traced in bands of at most so many pixels
 
-  Slot<uint> material_index;         // in: one a triangle
-  Slot<SurfaceMaterial> materials;   // in
-  Slot<Film> film;                   // in
-  Slot<Lighting> lighting;           // in
-  Slot<uint> srgb_thresholds;        // in: see srgb_thresholds()
-  Slot<uint> image;                  // out: RGBA8, red in the low byte, rows top to bottom
-  Slot<TraceCounters> counters;      // out
+  Slot<uint> material_index;        // in: one a triangle
+  Slot<SurfaceMaterial> materials;  // in
+  Slot<Film> film;                  // in
+  Slot<Lighting> lighting;          // in
+  Slot<uint> srgb_thresholds;       // in: see srgb_thresholds()
+  Slot<uint> image;                 // out: RGBA8, red in the low byte, rows top to bottom
+  Slot<TraceCounters> counters;     // out
 
   Slot<Ray> rays;
   Slot<Hit> hits;
@@ -37,12 +38,14 @@ struct TracePlan {
 };
 
 // Throws LayoutError if a slot does not fit a block.
-TracePlan plan_trace(Layout& layout, const BuildPlan& build, std::uint32_t material_count, const TraceOptions& options);
+TracePlan plan_trace(Layout& layout, const BuildPlan& build, std::uint32_t material_count,
+                     const TraceOptions& options);
 
 // Tree to image: camera rays, closest hits, shading, sRGB.
 void append_trace(Chain& chain, const BuildPlan& build, const TracePlan& plan);
 
-// For each 8-bit sRGB code the bits of the least linear value that rounds to it (IEC 61966-2-1); minus infinity for 0.
+// For each 8-bit sRGB code the bits of the least linear value that rounds to it (IEC 61966-2-1); minus
+// infinity for 0.
 std::array<uint, 256> srgb_thresholds();
 
 }  // namespace coppice

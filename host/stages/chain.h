@@ -11,8 +11,8 @@
 
 namespace coppice {
 
-// One step of a chain: a stage with its arguments; or, without a stage, zeroes written to a place; or, without bytes to
-// clear either, a mark that splits the time.
+// One step of a chain: a stage with its arguments; or, without a stage, zeroes written to a place; or,
+// without bytes to clear either, a mark that splits the time.
 struct Step {
   const StageDeclaration* stage = nullptr;
   std::array<std::byte, 128> args{};
@@ -24,8 +24,8 @@ struct Step {
   std::vector<std::uint32_t> specialization;  // constants 0, 1, ... of the kernel; never change its results
 };
 
-// A chain of stages, written once and run by any executor. It is resolved for one address space: the device's, where
-// kernels run on it, or the host's, where twins do. A barrier precedes every step.
+// A chain of stages, written once and run by any executor. It is resolved for one address space: the
+// device's, where kernels run on it, or the host's, where twins do. A barrier precedes every step.
 class Chain {
  public:
   explicit Chain(std::vector<std::uint64_t> block_addresses) : block_addresses_(std::move(block_addresses)) {}
@@ -36,7 +36,8 @@ class Chain {
   }
 
   template <class Args>
-  void run(const Stage<Args>& stage, const Args& args, uvec3 groups, std::vector<std::uint32_t> specialization = {}) {
+  void run(const Stage<Args>& stage, const Args& args, uvec3 groups,
+           std::vector<std::uint32_t> specialization = {}) {
     if (groups.x == 0) return;
     Step& step = add(stage, args);
     step.groups = groups;
@@ -65,6 +66,7 @@ class Chain {
   void mark() { steps_.emplace_back(); }
 
   const std::vector<Step>& steps() const { return steps_; }
+  std::vector<Step>& steps() { return steps_; }
 
  private:
   template <class Args>

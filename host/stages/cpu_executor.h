@@ -32,7 +32,9 @@ class CpuExecutor {
     return values;
   }
 
-  std::byte* at(Place place) const { return reinterpret_cast<std::byte*>(blocks_.at(place.block).get()) + place.offset; }
+  std::byte* at(Place place) const {
+    return reinterpret_cast<std::byte*>(blocks_.at(place.block).get()) + place.offset;
+  }
 
  private:
   std::vector<std::unique_ptr<std::uint64_t[]>> blocks_;

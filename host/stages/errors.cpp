@@ -16,13 +16,15 @@ std::string describe_error_word(std::uint32_t error_word) {
       {ERROR_TRACE_STEPS, "trace_closest: a ray needs more steps than this driver's loops may take"},
   };
   std::string description;
+  const auto add = [&](const char* meaning) {
+    if (!description.empty()) description.append("; ");
+    description.append(meaning);
+  };
   for (const auto& error : errors) {
-    if (!(error_word & error.bit)) continue;
-    if (!description.empty()) description += "; ";
-    description += error.meaning;
+    if (error_word & error.bit) add(error.meaning);
     error_word &= ~error.bit;
   }
-  if (error_word) description += (description.empty() ? "" : "; ") + std::string("unknown error bits");
+  if (error_word) add("error bits that no stage knows");
   return description;
 }
 

@@ -6,8 +6,8 @@ Place Layout::reserve(SlotListing slot) {
   constexpr std::uint64_t alignment = 256;
   const std::uint64_t bytes = (slot.bytes() + alignment - 1) / alignment * alignment + guard_bytes;
   if (bytes > max_block_bytes_) {
-    throw LayoutError("'" + slot.name + "' needs " + std::to_string(bytes) + " bytes in one piece, the device gives " +
-                      std::to_string(max_block_bytes_));
+    throw LayoutError("'" + slot.name + "' needs " + std::to_string(bytes) +
+                      " bytes in one piece, the device gives " + std::to_string(max_block_bytes_));
   }
   if (block_bytes_.empty() || block_bytes_.back() + bytes > max_block_bytes_) block_bytes_.push_back(0);
   slot.place = {static_cast<std::uint32_t>(block_bytes_.size() - 1), block_bytes_.back()};

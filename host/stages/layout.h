@@ -35,13 +35,14 @@ struct LayoutError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Hands out places for slots, in blocks no larger than a device allocates at once. Behind every slot lies a guard, so
-// that a write past the end of one is seen and is not another's first word.
+// Hands out places for slots, in blocks no larger than a device allocates at once. Behind every slot lies a
+// guard, so that a write past the end of one is seen and is not another's first word.
 class Layout {
  public:
   static constexpr std::uint64_t guard_bytes = 256;
 
-  explicit Layout(std::uint64_t max_block_bytes = std::uint64_t{1} << 30) : max_block_bytes_(max_block_bytes) {}
+  explicit Layout(std::uint64_t max_block_bytes = std::uint64_t{1} << 30)
+      : max_block_bytes_(max_block_bytes) {}
 
   // Throws LayoutError if the slot alone is larger than a block may be.
   template <class T>

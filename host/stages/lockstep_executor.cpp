@@ -51,7 +51,8 @@ void LockstepExecutor::take_over_device_memory() {
   }
 }
 
-std::optional<Difference> LockstepExecutor::run(const std::function<void(Chain&)>& append, const Tolerate& tolerate) {
+std::optional<Difference> LockstepExecutor::run(const std::function<void(Chain&)>& append,
+                                                const Tolerate& tolerate) {
   Chain gpu_chain = gpu_.chain(), cpu_chain = cpu_.chain();
   append(gpu_chain);
   append(cpu_chain);

@@ -11,16 +11,17 @@ namespace coppice {
 
 struct Difference {
   std::string stage;
-  std::string slot;     // or the guard behind it
-  std::uint64_t index;  // of the element; at least the slot's count in its guard
+  std::string slot;      // or the guard behind it
+  std::uint64_t index;   // of the element; at least the slot's count in its guard
   std::string cpu, gpu;  // the element's words in hexadecimal
 };
 
-// Runs a chain on a device and by its twins, on the same input, one stage at a time, and compares all memory of both
-// bit for bit after every stage, guards included.
+// Runs a chain on a device and by its twins, on the same input, one stage at a time, and compares all memory
+// of both bit for bit after every stage, guards included.
 class LockstepExecutor {
  public:
-  LockstepExecutor(Device& device, const Layout& layout) : layout_(layout), gpu_(device, layout), cpu_(layout) {}
+  LockstepExecutor(Device& device, const Layout& layout)
+      : layout_(layout), gpu_(device, layout), cpu_(layout) {}
 
   template <class T>
   void upload(const Slot<T>& slot, std::span<const T> values) {
@@ -28,8 +29,8 @@ class LockstepExecutor {
     cpu_.upload(slot, values);
   }
 
-  // Stages that compare only nearly (shading on a GPU) are judged by `tolerate`, which returns true to go on: then the
-  // device's bits are taken over.
+  // Stages that compare only nearly (shading on a GPU) are judged by `tolerate`, which returns true to go on:
+  // then the device's bits are taken over.
   using Tolerate = std::function<bool(const Difference&)>;
 
   // Appends to both chains alike; returns the first difference, if any.
@@ -37,6 +38,7 @@ class LockstepExecutor {
 
   std::uint32_t stages_run() const { return stages_run_; }
   const CpuExecutor& cpu() const { return cpu_; }
+  const GpuExecutor& gpu() const { return gpu_; }
 
  private:
   std::optional<Difference> compare(const char* stage);

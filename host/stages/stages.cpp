@@ -4,8 +4,8 @@
 
 namespace coppice {
 
-#define COPPICE_DEFINE_STAGE(stem, Args)                                                           \
-  const Stage<Args> stages::stem{                                                                  \
+#define COPPICE_DEFINE_STAGE(stem, Args)                                                             \
+  const Stage<Args> stages::stem{                                                                    \
       {#stem, spirv::stem, [](const void* args) { twins::stem(*static_cast<const Args*>(args)); }}}; \
   static_assert(sizeof(Args) <= 128 && sizeof(Args) % 8 == 0, "push constants of " #stem);
 COPPICE_STAGES(COPPICE_DEFINE_STAGE)

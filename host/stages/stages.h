@@ -8,24 +8,24 @@
 #include "stages/stage.h"
 
 // THE TABLE. A line here, a kernel kernels/<stem>.comp and a twin host/twins/<stem>.cpp make a stage.
-#define COPPICE_STAGES(STAGE)                     \
-  STAGE(primitive_bounds, PrimitiveBoundsArgs)    \
-  STAGE(morton_codes, MortonCodesArgs)            \
-  STAGE(sort_histogram, SortHistogramArgs)        \
-  STAGE(sort_digit_scan, SortDigitScanArgs)       \
-  STAGE(sort_tile_counts, SortPassArgs)           \
-  STAGE(sort_tile_scan, SortTileScanArgs)         \
-  STAGE(sort_pass, SortPassArgs)                  \
-  STAGE(ploc_leaves, PlocLeavesArgs)              \
-  STAGE(ploc_nearest, PlocNearestArgs)            \
-  STAGE(ploc_tile_counts, PlocMergeArgs)          \
-  STAGE(ploc_tile_scan, PlocTileScanArgs)         \
-  STAGE(ploc_merge, PlocMergeArgs)                \
-  STAGE(ploc_finish, PlocFinishArgs)              \
-  STAGE(camera_rays, CameraRaysArgs)              \
-  STAGE(trace_closest, TraceClosestArgs)          \
-  STAGE(trace_brute_force, TraceBruteForceArgs)   \
-  STAGE(shade, ShadeArgs)                         \
+#define COPPICE_STAGES(STAGE)                   \
+  STAGE(primitive_bounds, PrimitiveBoundsArgs)  \
+  STAGE(morton_codes, MortonCodesArgs)          \
+  STAGE(sort_histogram, SortHistogramArgs)      \
+  STAGE(sort_digit_scan, SortDigitScanArgs)     \
+  STAGE(sort_tile_counts, SortPassArgs)         \
+  STAGE(sort_tile_scan, SortTileScanArgs)       \
+  STAGE(sort_pass, SortPassArgs)                \
+  STAGE(ploc_leaves, PlocLeavesArgs)            \
+  STAGE(ploc_nearest, PlocNearestArgs)          \
+  STAGE(ploc_tile_counts, PlocMergeArgs)        \
+  STAGE(ploc_tile_scan, PlocTileScanArgs)       \
+  STAGE(ploc_merge, PlocMergeArgs)              \
+  STAGE(ploc_finish, PlocFinishArgs)            \
+  STAGE(camera_rays, CameraRaysArgs)            \
+  STAGE(trace_closest, TraceClosestArgs)        \
+  STAGE(trace_brute_force, TraceBruteForceArgs) \
+  STAGE(shade, ShadeArgs)                       \
   STAGE(resolve, ResolveArgs)
 
 namespace coppice {

@@ -21,7 +21,8 @@ vec3 unit_vector(const vec3& v) {
   return {scaled.x / length, scaled.y / length, scaled.z / length};
 }
 
-bool ray_meets_box(const Ray& ray, const vec3& box_min, const vec3& box_max, float t_min, float t_max, float& enter) {
+bool ray_meets_box(const Ray& ray, const vec3& box_min, const vec3& box_max, float t_min, float t_max,
+                   float& enter) {
   enter = t_min;
   for (int axis = 0; axis < 3; ++axis) {
     const float direction = ray.direction[axis];

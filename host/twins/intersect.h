@@ -6,9 +6,11 @@ namespace coppice::twins {
 
 // Slab test of the twins, after Ize 2013: false only if the ray misses the box for t in [t_min, t_max].
 // `enter` is where it enters, at least t_min.
-bool ray_meets_box(const Ray& ray, const vec3& box_min, const vec3& box_max, float t_min, float t_max, float& enter);
+bool ray_meets_box(const Ray& ray, const vec3& box_min, const vec3& box_max, float t_min, float t_max,
+                   float& enter);
 
-// Moller and Trumbore 1997. Keeps the closer hit in `hit`, of equally close ones the one with the smaller index.
+// Moller and Trumbore 1997. Keeps the closer hit in `hit`, of equally close ones the one with the smaller
+// index.
 void ray_meets_triangle(const Ray& ray, const Triangle& triangle, uint index, Hit& hit);
 
 // False for a ray with a NaN, an empty range or no direction.

@@ -12,7 +12,8 @@ std::vector<uint> find_neighbours(const std::vector<Node>& clusters, bool pair_a
                                   const Normalisation& normalise) {
   const auto count = static_cast<uint>(clusters.size());
   std::vector<Aabb> boxes;
-  for (const Node& cluster : clusters) boxes.push_back({normalise(cluster.box_min), normalise(cluster.box_max)});
+  for (const Node& cluster : clusters)
+    boxes.push_back({normalise(cluster.box_min), normalise(cluster.box_max)});
   std::vector<uint> nearest;
   for (uint i = 0; i < count; ++i) {
     const uint partner = i % 2 == 1 ? i - 1 : i + 1 < count ? i + 1 : i;
@@ -32,7 +33,8 @@ void ploc_finish(const PlocFinishArgs& args) {
 
   for (; clusters.size() > 1 && index < args.rounds_bound; ++index) {
     const PlocRound& round = args.rounds[index];
-    const std::vector<uint> nearest = find_neighbours(clusters, round.pair_all, args.radius, Normalisation(state));
+    const std::vector<uint> nearest =
+        find_neighbours(clusters, round.pair_all, args.radius, Normalisation(state));
     std::vector<Node> next;
     uint merged = 0;
     for (uint i = 0; i < clusters.size(); ++i) {

@@ -8,8 +8,9 @@ namespace coppice::twins {
 void resolve(const ResolveArgs& args) {
   const uint* const thresholds = &args.srgb_thresholds[0];
   const auto srgb_code = [&](float linear) {
-    const auto above = std::upper_bound(thresholds + 1, thresholds + 256, linear,
-                                        [](float value, uint bits) { return value < std::bit_cast<float>(bits); });
+    const auto above = std::upper_bound(thresholds + 1, thresholds + 256, linear, [](float value, uint bits) {
+      return value < std::bit_cast<float>(bits);
+    });
     return static_cast<uint>(above - thresholds - 1);
   };
   for (uint i = 0; i < args.pixel_count; ++i) {

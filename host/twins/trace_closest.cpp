@@ -56,7 +56,8 @@ void trace_closest(const TraceClosestArgs& args) {
     return;
   }
   for (uint i = 0; i < args.ray_count; ++i) {
-    if (!empty && ray_is_sound(args.rays[i])) count_into(counters.steps, trace(args, args.rays[i], args.hits[i]));
+    if (!empty && ray_is_sound(args.rays[i]))
+      count_into(counters.steps, trace(args, args.rays[i], args.hits[i]));
     count_into(counters.rays, 1);
     count_into(counters.hits, args.hits[i].triangle != NO_TRIANGLE);
   }

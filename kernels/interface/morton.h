@@ -3,7 +3,9 @@
 #include "types.h"
 INTERFACE_BEGIN
 
-const uint MORTON_GROUP = 256;
+const uint MORTON_GROUP = 64;
+const uint MORTON_PER_INVOCATION = 16;
+const uint MORTON_TILE = MORTON_GROUP * MORTON_PER_INVOCATION;
 const uint MORTON_INACTIVE = 0xffffffffu;  // every key word of an inactive triangle: sorts behind all codes
 
 struct MortonCodesArgs {

@@ -1,4 +1,5 @@
-// PLOC: Meister and Bittner, "Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy Construction", 2018.
+// PLOC: Meister and Bittner, "Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy
+// Construction", 2018.
 #ifndef COPPICE_INTERFACE_PLOC_H
 #define COPPICE_INTERFACE_PLOC_H
 #include "types.h"
@@ -9,7 +10,9 @@ const uint PLOC_MAX_RADIUS = 100;
 // this bounds the rounds, see docs/numerics.md.
 const uint PLOC_SLOW_ROUND = 8;
 
-const uint PLOC_LEAVES_GROUP = 256;
+const uint PLOC_LEAVES_GROUP = 64;
+const uint PLOC_LEAVES_PER_INVOCATION = 16;
+const uint PLOC_LEAVES_TILE = PLOC_LEAVES_GROUP * PLOC_LEAVES_PER_INVOCATION;
 
 const uint PLOC_NEAREST_GROUP = 128;
 const uint PLOC_NEAREST_TILE = 512;
@@ -20,14 +23,15 @@ const uint PLOC_MERGE_TILE = PLOC_MERGE_GROUP * PLOC_MERGE_PER_INVOCATION;
 const uint PLOC_MERGE_SUMS = 2;  // scanned together: clusters that retire, pairs that merge
 const uint PLOC_TILE_SCAN_GROUP = 64;
 
-const uint PLOC_FINISH_CLUSTERS = 512;  // from here on one workgroup does all remaining rounds, an invocation a cluster
+const uint PLOC_FINISH_CLUSTERS =
+    512;  // from here on one workgroup does all remaining rounds, an invocation a cluster
 
 // One round, written by the last tile of the round before it. Zero for a round that is not needed.
 struct PlocRound {
   uint cluster_count;
-  uint merged_before;  // pairs merged in all earlier rounds
-  uint pair_all;       // 1: cluster 2i merges with 2i + 1, whatever their distance
-  uint ticket;         // tile tickets of this round's merge
+  uint merged_before;    // pairs merged in all earlier rounds
+  uint pair_all;         // 1: cluster 2i merges with 2i + 1, whatever their distance
+  uint ticket;           // tile tickets of this round's merge
   uvec3 nearest_groups;  // indirect dispatches of this round; zero when the finish takes over
   uvec3 merge_groups;
   // Without lookback one more workgroup scans the tiles.
@@ -38,9 +42,9 @@ struct PlocRound {
 INTERFACE_BUFFER(PlocRoundBuffer, PlocRound, 16)
 
 struct PlocLeavesArgs {
-  AabbBuffer boxes;       // triangle_count
-  UintBuffer values;      // triangle indices in Morton order, active ones first
-  NodeBuffer clusters;    // active_count leaves, in Morton order
+  AabbBuffer boxes;        // triangle_count
+  UintBuffer values;       // triangle indices in Morton order, active ones first
+  NodeBuffer clusters;     // active_count leaves, in Morton order
   BuildStateBuffer state;  // active_count, read
   PlocRoundBuffer rounds;  // the first one is written
   uint triangle_count;
@@ -48,10 +52,10 @@ struct PlocLeavesArgs {
 };
 
 struct PlocNearestArgs {
-  NodeBuffer clusters;      // of this round
-  UintBuffer nearest;       // cluster_count: index of the nearest neighbour; its own index when it has none
-  UintBuffer tile_status;   // cleared for this round's merge
-  BuildStateBuffer state;   // scene box, read
+  NodeBuffer clusters;     // of this round
+  UintBuffer nearest;      // cluster_count: index of the nearest neighbour; its own index when it has none
+  UintBuffer tile_status;  // cleared for this round's merge
+  BuildStateBuffer state;  // scene box, read
   PlocRoundBuffer rounds;
   uint round;
   uint radius;
@@ -61,8 +65,9 @@ struct PlocMergeArgs {
   NodeBuffer clusters_in;
   NodeBuffer clusters_out;
   UintBuffer nearest;
-  CoherentUintBuffer tile_status;  // tiles * PLOC_MERGE_SUMS; without lookback, sums of each tile, then their prefixes
-  NodeBuffer nodes;                // 2 * active_count - 1
+  CoherentUintBuffer
+      tile_status;   // tiles * PLOC_MERGE_SUMS; without lookback, sums of each tile, then their prefixes
+  NodeBuffer nodes;  // 2 * active_count - 1
   BuildStateBuffer state;
   PlocRoundBuffer rounds;
   uint round;

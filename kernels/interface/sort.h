@@ -15,8 +15,8 @@ const uint SORT_HISTOGRAM_TILE = SORT_HISTOGRAM_GROUP * SORT_HISTOGRAM_RUN;
 const uint SORT_HISTOGRAM_ROW = SORT_PASSES_PER_WORD * SORT_DIGITS / 2;
 
 // One invocation ranks a run of consecutive keys serially: stable, and the fastest on CPU devices.
-const uint SORT_GROUP = 24;
-const uint SORT_RUN = 512;
+const uint SORT_GROUP = 16;
+const uint SORT_RUN = 1024;
 const uint SORT_TILE = SORT_GROUP * SORT_RUN;
 
 struct SortHistogramArgs {
@@ -36,10 +36,11 @@ struct SortDigitScanArgs {
 struct SortPassArgs {
   UintBuffer keys_in, values_in;
   UintBuffer keys_out, values_out;
-  UintBuffer digit_offsets;          // SORT_DIGITS, of this pass
-  CoherentUintBuffer tile_status;    // tiles * SORT_DIGITS: lookback words; without lookback, digit counts, then their prefixes
-  CoherentUintBuffer ticket;         // one word
-  BuildStateBuffer state;            // error word
+  UintBuffer digit_offsets;        // SORT_DIGITS, of this pass
+  CoherentUintBuffer tile_status;  // tiles * SORT_DIGITS: lookback words; without lookback, digit counts,
+                                   // then their prefixes
+  CoherentUintBuffer ticket;       // one word
+  BuildStateBuffer state;          // error word
   uint count;
   uint key_words;
   uint pass;

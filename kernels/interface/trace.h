@@ -8,7 +8,7 @@ const uint TRACE_GROUP = 64;
 const uint SHADE_GROUP = 64;
 const uint RESOLVE_GROUP = 64;
 
-const uint TRACE_STACK = 128;         // entries; a tree of greater height is refused (ERROR_TREE_TOO_DEEP)
+const uint TRACE_STACK = 128;          // entries; a tree of greater height is refused (ERROR_TREE_TOO_DEEP)
 const uint BRUTE_FORCE_SLICE = 16384;  // triangles one dispatch tests, below old lavapipe's loop limit
 const uint NO_TRIANGLE = 0xffffffffu;
 
@@ -19,8 +19,8 @@ struct Ray {
   float t_max;
 };
 
-// Closest hit; of equally close triangles the one with the smallest index, so that the order of traversal, and with
-// it the tree, never decides.
+// Closest hit; of equally close triangles the one with the smallest index, so that the order of traversal,
+// and with it the tree, never decides.
 struct Hit {
   float t;        // infinity for a miss
   uint triangle;  // NO_TRIANGLE for a miss

@@ -1,5 +1,6 @@
 // What host code and kernels both read: this folder is compiled by g++ and by glslang.
-// Every struct is padded to its alignment by hand, since scalar layout does not pad nested structs and C++ does.
+// Every struct is padded to its alignment by hand, since scalar layout does not pad nested structs and C++
+// does.
 #ifndef COPPICE_INTERFACE_TYPES_H
 #define COPPICE_INTERFACE_TYPES_H
 
@@ -45,10 +46,12 @@ struct Address {
 #define INTERFACE_END
 #define INTERFACE_BUFFER(Name, Type, Alignment) \
   layout(buffer_reference, scalar, buffer_reference_align = Alignment) buffer Name { Type at[]; };
-// For words that other workgroups write while this one reads them. Old lavapipe hoists plain polls out of their
-// loop and miscompiles the Vulkan memory model, but reads `volatile coherent` words afresh.
-#define INTERFACE_COHERENT_BUFFER(Name, Type, Alignment) \
-  layout(buffer_reference, scalar, buffer_reference_align = Alignment) volatile coherent buffer Name { Type at[]; };
+// For words that other workgroups write while this one reads them. Old lavapipe hoists plain polls out of
+// their loop and miscompiles the Vulkan memory model, but reads `volatile coherent` words afresh.
+#define INTERFACE_COHERENT_BUFFER(Name, Type, Alignment)                                               \
+  layout(buffer_reference, scalar, buffer_reference_align = Alignment) volatile coherent buffer Name { \
+    Type at[];                                                                                         \
+  };
 
 #endif
 
@@ -63,11 +66,11 @@ struct Aabb {
   vec3 box_min, box_max;
 };
 
-// One entry of a BVH2, and one cluster while the tree grows. Root at 0; the two children of an internal node are
-// neighbours in memory, so one 64-byte read fetches both boxes.
+// One entry of a BVH2, and one cluster while the tree grows. Root at 0; the two children of an internal node
+// are neighbours in memory, so one 64-byte read fetches both boxes.
 struct Node {
   vec3 box_min;
-  uint child;   // leaf: triangle index; internal node: index of its first child, the second follows it
+  uint child;  // leaf: triangle index; internal node: index of its first child, the second follows it
   vec3 box_max;
   uint height;  // 0 for a leaf, else 1 + the larger height of the children
 };
@@ -78,7 +81,8 @@ INTERFACE_BUFFER(TriangleBuffer, Triangle, 4)
 INTERFACE_BUFFER(AabbBuffer, Aabb, 8)
 INTERFACE_BUFFER(NodeBuffer, Node, 16)
 
-// Bits of the error word: a kernel that cannot go on sets its bit, the host names the stage (stages/errors.h).
+// Bits of the error word: a kernel that cannot go on sets its bit, the host names the stage
+// (stages/errors.h).
 const uint ERROR_SORT_LOOKBACK = 1u;
 const uint ERROR_PLOC_LOOKBACK = 2u;
 const uint ERROR_PLOC_ROUNDS = 4u;

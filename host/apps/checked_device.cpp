@@ -1,0 +1,44 @@
+#include "apps/checked_device.h"
+
+#include <cstdio>
+
+#include "pipeline/self_check.h"
+
+namespace coppice {
+
+BuildOptions CheckedDevice::build_options(const Options& options) const {
+  BuildOptions build;
+  build.radius = options.radius;
+  build.morton_bits = options.morton_bits;
+  build.lookback = lookback;
+  return build;
+}
+
+TraceOptions CheckedDevice::trace_options(const Options& options) const {
+  TraceOptions trace;
+  trace.width = options.width;
+  trace.height = options.height;
+  trace.samples = options.samples;
+  trace.brute_force = options.builder == "none";
+  if (const std::uint32_t limit = device.properties().loop_turn_limit) {
+    // Two visits a turn stretch the turns that the driver's loops may take, for a fifth more time.
+    trace.max_turns = limit - 1000;
+    trace.visits_per_turn = 2;
+  }
+  return trace;
+}
+
+CheckedDevice open_device(const Options& options) {
+  CheckedDevice checked{Device({options.device, options.validate, false}), true};
+  const bool works = check_lookback(checked.device);
+  checked.lookback = options.lookback == "auto" ? works : options.lookback == "on";
+  return checked;
+}
+
+int validation_status(Device& device) {
+  const auto messages = device.take_validation_messages();
+  for (const std::string& message : messages) std::fprintf(stderr, "validation: %s\n", message.c_str());
+  return messages.empty() ? 0 : 1;
+}
+
+}  // namespace coppice

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "apps/options.h"
+#include "gpu/device.h"
+#include "pipeline/trace.h"
+
+namespace coppice {
+
+// A device that has passed the self-check, and what it asks of plans.
+struct CheckedDevice {
+  Device device;
+  bool lookback;
+
+  BuildOptions build_options(const Options& options) const;
+  TraceOptions trace_options(const Options& options) const;
+};
+
+// Throws DeviceError if there is no such device or it fails.
+CheckedDevice open_device(const Options& options);
+
+// Prints what the validation layers said, if anything; then the exit status is 1, else 0.
+int validation_status(Device& device);
+
+}  // namespace coppice

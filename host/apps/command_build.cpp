@@ -1,0 +1,39 @@
+#include "apps/frame.h"
+#include "apps/measure_build.h"
+#include "scene/scene_source.h"
+
+namespace coppice {
+
+namespace {
+
+BuildReport build_on_device(const Options& options, const SceneArrays& arrays, BuildReport report,
+                            int& status) {
+  CheckedDevice device = open_device(options);
+  Layout layout(device.device.properties().max_block_bytes);
+  const BuildPlan plan =
+      plan_build(layout, static_cast<std::uint32_t>(arrays.triangles.size()), device.build_options(options));
+  GpuExecutor executor(device.device, layout);
+  executor.upload(plan.triangles, std::span<const Triangle>(arrays.triangles));
+  for (const std::uint64_t bytes : layout.block_bytes()) report.device_bytes += bytes;
+  report = measure_gpu_build(device, executor, plan, report, options);
+  status = validation_status(device.device);
+  return report;
+}
+
+}  // namespace
+
+int run_build(const Options& options) {
+  const Scene scene = open_scene(options.scene);
+  print_warnings(scene);
+  const SceneArrays arrays = scene_arrays(scene);
+  BuildReport report = report_for(options, scene);
+  int status = 0;
+  Bvh bvh;
+  report = options.builder == "gpu-ploc" ? build_on_device(options, arrays, report, status)
+                                         : measure_cpu_build(arrays.triangles, report, options, bvh);
+  if (talks(options)) print_build(report);
+  write_json(options.json, to_json(report));
+  return status;
+}
+
+}  // namespace coppice

@@ -1,0 +1,99 @@
+#include "apps/measure_build.h"
+
+#include <chrono>
+#include <thread>
+
+#include "analysis/tree_hash.h"
+#include "apps/progress.h"
+#include "builders/ploc.h"
+#include "stages/errors.h"
+
+namespace coppice {
+
+void check_state(const GpuExecutor& executor, const BuildPlan& plan) {
+  const std::string error = describe_error_word(executor.read(plan.state)[0].error_word);
+  if (!error.empty()) throw DeviceError(error);
+}
+
+std::vector<Node> read_tree(const GpuExecutor& executor, const BuildPlan& plan) {
+  const std::uint64_t active = executor.read(plan.state)[0].active_count;
+  return executor.read(Slot<Node>{plan.nodes.place, active == 0 ? 0 : 2 * active - 1});
+}
+
+BuildReport report_for(const Options& options, const Scene& scene) {
+  BuildReport report;
+  report.scene = scene.name;
+  report.triangles = scene.indices.size();
+  report.inactive = count_inactive(scene);
+  report.builder = options.builder;
+  report.radius = options.radius;
+  report.morton_bits = options.morton_bits;
+  return report;
+}
+
+void describe_tree(BuildReport& report, std::span<const Node> nodes) {
+  report.quality = measure_quality(nodes);
+  report.tree_hash = tree_hash(nodes);
+}
+
+KernelSplit split_time(GpuExecutor& executor, std::span<const Step> steps, double limit_seconds) {
+  KernelSplit split{measurable_steps(executor, steps), {}};
+  split.times = executor.record(split.steps, Timestamps::every_step).submit_and_wait(limit_seconds);
+  return split;
+}
+
+BuildReport measure_gpu_build(CheckedDevice& device, GpuExecutor& executor, const BuildPlan& plan,
+                              BuildReport report, const Options& options) {
+  constexpr double limit_seconds = 120;
+  Chain chain = executor.chain();
+  append_build(chain, plan);
+  Recorder recorder = executor.record(chain.steps());
+  Progress progress("building", options.runs + 2);
+  recorder.submit_and_wait(limit_seconds);  // compiles the kernels
+  progress.step();
+  std::vector<double> build_ms, wall_ms;
+  for (std::uint32_t run = 0; run < options.runs; ++run) {
+    const Recorder::Times times = recorder.submit_and_wait(limit_seconds);
+    build_ms.push_back(times.total_ms);
+    wall_ms.push_back(times.wall_ms);
+    progress.step();
+  }
+  const KernelSplit split = split_time(executor, chain.steps(), limit_seconds);
+  write_trace_events(options.trace_events, split.steps, split.times);
+  check_state(executor, plan);
+
+  report.device = device.device.properties().name;
+  report.driver = device.device.properties().driver;
+  report.build_ms = spread_of(build_ms);
+  report.wall_ms = spread_of(wall_ms);
+  report.runs = options.runs;
+  report.kernels = kernel_times(split.steps, split.times);
+  for (const KernelTime& kernel : report.kernels) report.dispatches += kernel.dispatches;
+  report.rounds = executor.read(plan.state)[0].round_count;
+  report.rounds_bound = plan.rounds_bound;
+  describe_tree(report, read_tree(executor, plan));
+  return report;
+}
+
+BuildReport measure_cpu_build(std::span<const Triangle> triangles, BuildReport report, const Options& options,
+                              Bvh& bvh) {
+  report.device = "host CPU, " + std::to_string(std::max(1u, std::thread::hardware_concurrency())) + " cores";
+  std::vector<double> build_ms;
+  Progress progress("building", options.runs);
+  for (std::uint32_t run = 0; run < options.runs; ++run) {
+    const auto start = std::chrono::steady_clock::now();
+    if (options.builder == "ploc") bvh = build_ploc(triangles, {options.radius, options.morton_bits});
+    build_ms.push_back(
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+    progress.step();
+  }
+  report.build_ms = report.wall_ms = spread_of(build_ms);
+  report.runs = options.runs;
+  report.rounds = bvh.rounds;
+  report.rounds_bound =
+      options.builder == "ploc" ? ploc_rounds_bound(static_cast<std::uint32_t>(triangles.size()), 1) : 0;
+  describe_tree(report, bvh.nodes);
+  return report;
+}
+
+}  // namespace coppice

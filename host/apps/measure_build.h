@@ -1,0 +1,37 @@
+#pragma once
+
+#include "apps/checked_device.h"
+#include "apps/report.h"
+#include "builders/bvh.h"
+#include "scene/scene.h"
+
+namespace coppice {
+
+// Fails with DeviceError if the last submit left an error word.
+void check_state(const GpuExecutor& executor, const BuildPlan& plan);
+
+// The tree of the last submit, as long as it came out.
+std::vector<Node> read_tree(const GpuExecutor& executor, const BuildPlan& plan);
+
+// What is known of the scene before any build.
+BuildReport report_for(const Options& options, const Scene& scene);
+
+// Quality and hash of the tree, added to the report.
+void describe_tree(BuildReport& report, std::span<const Node> nodes);
+
+// Splits the time of `steps`, which the device has run before, by kernel.
+struct KernelSplit {
+  std::vector<Step> steps;
+  Recorder::Times times;
+};
+KernelSplit split_time(GpuExecutor& executor, std::span<const Step> steps, double limit_seconds);
+
+// Builds options.runs times after a warm-up, measures, and describes the tree. `trace_events` may be empty.
+BuildReport measure_gpu_build(CheckedDevice& device, GpuExecutor& executor, const BuildPlan& plan,
+                              BuildReport report, const Options& options);
+
+// The same by a CPU builder; `bvh` is the tree of the last run.
+BuildReport measure_cpu_build(std::span<const Triangle> triangles, BuildReport report, const Options& options,
+                              Bvh& bvh);
+
+}  // namespace coppice

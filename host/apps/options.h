@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace coppice {
+
+// What the command line says, of all commands.
+struct Options {
+  std::string scene = "grove";
+  std::string device;  // part of a name or an index; empty: the best one
+  std::string json;    // file, - for stdout; empty: none
+  std::string trace_events;
+  bool validate = false;
+
+  std::string builder = "gpu-ploc";
+  std::uint32_t radius = 16;
+  std::uint32_t morton_bits = 30;
+  std::uint32_t runs = 5;
+  std::string lookback = "auto";  // auto, on, off
+
+  std::string output = "coppice.png";
+  std::string size;  // WxH as given; `width` and `height` hold it parsed
+  std::uint32_t width = 1024, height = 768;
+  std::uint32_t samples = 1;
+  std::string tracer = "gpu";
+};
+
+// One function a command. Each returns the exit status, or throws InputError, DeviceError or LayoutError.
+int run_render(const Options& options);
+int run_build(const Options& options);
+int run_lockstep(const Options& options);
+int run_scenes(const Options& options);
+int run_devices(const Options& options);
+
+}  // namespace coppice

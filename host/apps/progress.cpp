@@ -1,0 +1,32 @@
+#include "apps/progress.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace coppice {
+
+Progress::Progress(std::string label, std::uint32_t steps)
+    : label_(std::move(label)), steps_(steps), shown_(isatty(STDERR_FILENO)) {
+  draw();
+}
+
+Progress::~Progress() {
+  if (shown_) std::fprintf(stderr, "\r\033[K");
+}
+
+void Progress::step() {
+  ++done_;
+  draw();
+}
+
+void Progress::draw() const {
+  if (!shown_) return;
+  constexpr std::uint32_t width = 30;
+  const std::uint32_t filled = steps_ ? std::min(done_, steps_) * width / steps_ : 0;
+  std::fprintf(stderr, "\r%s [%s%s] %u/%u", label_.c_str(), std::string(filled, '#').c_str(),
+               std::string(width - filled, ' ').c_str(), done_, steps_);
+}
+
+}  // namespace coppice

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace coppice {
+
+// A progress bar on stderr while it lives; shows nothing where stderr is no terminal.
+class Progress {
+ public:
+  Progress(std::string label, std::uint32_t steps);
+  ~Progress();
+  void step();
+
+ private:
+  void draw() const;
+
+  std::string label_;
+  std::uint32_t steps_, done_ = 0;
+  bool shown_;
+};
+
+}  // namespace coppice

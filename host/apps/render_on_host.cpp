@@ -1,0 +1,75 @@
+#include <algorithm>
+#include <chrono>
+
+#include "analysis/cpu_tracer.h"
+#include "apps/frame.h"
+#include "apps/render_frame.h"
+#include "stages/cpu_executor.h"
+#include "stages/stages.h"
+
+namespace coppice {
+
+namespace {
+
+Bvh build_on_device(CheckedDevice& device, const SceneArrays& arrays, BuildReport& report,
+                    const Options& options) {
+  Layout layout(device.device.properties().max_block_bytes);
+  const BuildPlan plan =
+      plan_build(layout, static_cast<std::uint32_t>(arrays.triangles.size()), device.build_options(options));
+  GpuExecutor executor(device.device, layout);
+  executor.upload(plan.triangles, std::span<const Triangle>(arrays.triangles));
+  report = measure_gpu_build(device, executor, plan, report, options);
+  return {read_tree(executor, plan), executor.read(plan.state)[0].active_count, report.rounds};
+}
+
+}  // namespace
+
+RenderReport render_on_host(CheckedDevice* device, const Scene& scene, const Options& options) {
+  const SceneArrays arrays = scene_arrays(scene);
+  Options once = options;
+  once.runs = 1;
+  RenderReport report;
+  report.build = report_for(options, scene);
+  Bvh bvh;
+  if (options.builder == "gpu-ploc") {
+    bvh = build_on_device(*device, arrays, report.build, once);
+  } else {
+    report.build = measure_cpu_build(arrays.triangles, report.build, once, bvh);
+  }
+
+  Layout layout(~std::uint64_t{0});
+  const BuildPlan build = plan_build(layout, static_cast<std::uint32_t>(arrays.triangles.size()), {});
+  TraceOptions trace_options;
+  trace_options.width = options.width;
+  trace_options.height = options.height;
+  trace_options.samples = options.samples;
+  const TracePlan trace =
+      plan_trace(layout, build, static_cast<std::uint32_t>(arrays.materials.size()), trace_options);
+  CpuExecutor executor(layout);
+  const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
+  upload_frame(executor, build, trace, arrays,
+               make_film(frame_scene(scene, aspect), options.width, options.height, options.samples));
+
+  Chain chain = executor.chain();
+  append_trace(chain, build, trace);
+  const auto start = std::chrono::steady_clock::now();
+  for (const Step& step : chain.steps()) {
+    if (step.stage != &stages::trace_closest) {
+      executor.run(step);
+      continue;
+    }
+    TraceClosestArgs args;
+    std::memcpy(&args, step.args.data(), sizeof args);
+    const std::span<const Ray> rays(&args.rays[0], args.ray_count);
+    const std::span<Hit> hits(&args.hits[0], args.ray_count);
+    trace_all(bvh.nodes, arrays.triangles, rays, hits);
+    report.rays += args.ray_count;
+    report.hits += std::ranges::count_if(hits, [](const Hit& hit) { return hit.triangle != NO_TRIANGLE; });
+  }
+  report.trace_ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  report.image = executor.read(trace.image);
+  return report;
+}
+
+}  // namespace coppice

@@ -1,0 +1,145 @@
+#include "apps/report.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <iostream>
+
+#include "analysis/tree_hash.h"
+#include "scene/input_error.h"
+
+namespace coppice {
+
+namespace {
+
+const char* step_name(const Step& step) { return step.stage ? step.stage->name : "clear"; }
+
+void write_text(const std::string& path, const std::string& text) {
+  std::ofstream file(path, std::ios::trunc);
+  file << text << '\n';
+  file.close();
+  if (!file) throw InputError("cannot write '" + path + "': " + std::strerror(errno));
+}
+
+}  // namespace
+
+std::vector<Step> measurable_steps(const GpuExecutor& executor, std::span<const Step> steps) {
+  std::vector<Step> kept;
+  for (const Step& step : steps) {
+    if (!step.stage && step.clear_bytes == 0) continue;
+    if (step.indirect && executor.read(Slot<uint>{step.place, 1})[0] == 0) continue;
+    kept.push_back(step);
+  }
+  return kept;
+}
+
+std::vector<KernelTime> kernel_times(std::span<const Step> steps, const Recorder::Times& times) {
+  std::vector<KernelTime> kernels;
+  for (std::size_t i = 0; i < steps.size() && i < times.steps_ms.size(); ++i) {
+    const std::string name = step_name(steps[i]);
+    auto row = std::ranges::find(kernels, name, &KernelTime::name);
+    if (row == kernels.end()) row = kernels.insert(kernels.end(), {name, 0, 0});
+    row->ms += times.steps_ms[i];
+    ++row->dispatches;
+  }
+  return kernels;
+}
+
+Json to_json(std::span<const KernelTime> kernels) {
+  Json rows = Json::array();
+  for (const KernelTime& kernel : kernels) {
+    rows.push_back({{"name", kernel.name}, {"ms", kernel.ms}, {"dispatches", kernel.dispatches}});
+  }
+  return rows;
+}
+
+void print_kernels(std::span<const KernelTime> kernels) {
+  double total = 0;
+  for (const KernelTime& kernel : kernels) total += kernel.ms;
+  std::printf("  %-18s %10s %7s %11s\n", "kernel", "ms", "share", "dispatches");
+  for (const KernelTime& kernel : kernels) {
+    std::printf("  %-18s %10.3f %6.1f%% %11u\n", kernel.name.c_str(), kernel.ms, 100 * kernel.ms / total,
+                kernel.dispatches);
+  }
+  std::printf("  %-18s %10.3f         (with a timestamp after each dispatch)\n", "sum", total);
+}
+
+Spread spread_of(std::vector<double> values) {
+  std::ranges::sort(values);
+  const std::size_t half = values.size() / 2;
+  const double median = values.size() % 2 ? values[half] : (values[half - 1] + values[half]) / 2;
+  return {median, values.front(), values.back()};
+}
+
+Json to_json(const BuildReport& report) {
+  Json json = {{"scene", report.scene},
+               {"triangles", report.triangles},
+               {"inactive", report.inactive},
+               {"builder", report.builder},
+               {"radius", report.radius},
+               {"morton_bits", report.morton_bits},
+               {"device", report.device},
+               {"driver", report.driver},
+               {"build_ms", report.build_ms.median},
+               {"build_ms_min", report.build_ms.least},
+               {"build_ms_max", report.build_ms.greatest},
+               {"runs", report.runs},
+               {"wall_ms", report.wall_ms.median}};
+  if (!report.kernels.empty()) {
+    json["kernels"] = to_json(report.kernels);
+    json["dispatches"] = report.dispatches;
+    json["device_bytes"] = report.device_bytes;
+  }
+  json["rounds"] = report.rounds;
+  json["rounds_bound"] = report.rounds_bound;
+  json["nodes"] = report.quality.nodes;
+  json["leaves"] = report.quality.leaves;
+  json["depth"] = report.quality.depth;
+  json["sah"] = report.quality.sah;
+  json["references"] = report.quality.references;
+  json["tree_hash"] = hex16(report.tree_hash);
+  return json;
+}
+
+void print_build(const BuildReport& report) {
+  std::printf("%s: %llu triangles", report.scene.c_str(), static_cast<unsigned long long>(report.triangles));
+  if (report.inactive) std::printf(" (%llu inactive)", static_cast<unsigned long long>(report.inactive));
+  std::printf(", %s on %s%s%s\n", report.builder.c_str(), report.device.c_str(),
+              report.driver.empty() ? "" : ", ", report.driver.c_str());
+  if (!report.kernels.empty()) print_kernels(report.kernels);
+  std::printf("  build %.3f ms (%.3f to %.3f in %u runs)", report.build_ms.median, report.build_ms.least,
+              report.build_ms.greatest, report.runs);
+  if (report.rounds_bound) std::printf(", %u rounds of at most %u", report.rounds, report.rounds_bound);
+  std::printf("\n  tree %s: %llu nodes, depth %u, SAH cost %.3f\n", hex16(report.tree_hash).c_str(),
+              static_cast<unsigned long long>(report.quality.nodes), report.quality.depth,
+              report.quality.sah);
+}
+
+void write_json(const std::string& path, const Json& json) {
+  if (path.empty()) return;
+  if (path == "-") {
+    std::cout << json.dump(2) << std::endl;
+  } else {
+    write_text(path, json.dump(2));
+  }
+}
+
+void write_trace_events(const std::string& path, std::span<const Step> steps, const Recorder::Times& times) {
+  if (path.empty()) return;
+  Json events = Json::array();
+  double start_us = 0;
+  for (std::size_t i = 0; i < times.steps_ms.size(); ++i) {
+    const double duration_us = times.steps_ms[i] * 1000;
+    events.push_back({{"name", step_name(steps[i])},
+                      {"ph", "X"},
+                      {"ts", start_us},
+                      {"dur", duration_us},
+                      {"pid", 1},
+                      {"tid", 1}});
+    start_us += duration_us;
+  }
+  write_text(path, Json{{"traceEvents", events}, {"displayTimeUnit", "ms"}}.dump());
+}
+
+}  // namespace coppice

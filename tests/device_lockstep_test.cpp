@@ -1,0 +1,220 @@
+// Every stage gives the same bits on the device as its twin does, and a fault in any stage is named.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "apps/frame.h"
+#include "scene/hard_cases.h"
+#include "stages/lockstep_executor.h"
+#include "stages/stages.h"
+#include "support/test_device.h"
+
+namespace coppice {
+namespace {
+
+class Lockstep : public DeviceTest {};
+
+using Plant = std::function<void(std::vector<Step>&)>;
+
+std::optional<Difference> build_in_lockstep(std::span<const Triangle> triangles, const BuildOptions& options,
+                                            const Plant& plant = {}) {
+  Layout layout(test_device().properties().max_block_bytes);
+  const BuildPlan plan = plan_build(layout, static_cast<std::uint32_t>(triangles.size()), options);
+  LockstepExecutor executor(test_device(), layout);
+  executor.upload(plan.triangles, triangles);
+  const auto difference = executor.run([&](Chain& chain) {
+    append_build(chain, plan);
+    if (plant) plant(chain.steps());
+  });
+  EXPECT_EQ(executor.cpu().read(plan.state)[0].error_word, 0u);
+  return difference;
+}
+
+void expect_equal(std::span<const Triangle> triangles, const BuildOptions& options, const std::string& what) {
+  const auto difference = build_in_lockstep(triangles, options);
+  EXPECT_FALSE(difference) << what << ": stage " << difference->stage << ", " << difference->slot << "["
+                           << difference->index << "]\ncpu " << difference->cpu << "\ngpu "
+                           << difference->gpu;
+}
+
+TEST_F(Lockstep, SizesUpTo300) {
+  for (std::uint32_t size = 0; size <= 300; ++size) {
+    expect_equal(random_triangles(size, size), {}, std::to_string(size) + " triangles");
+  }
+}
+
+TEST_F(Lockstep, PowersOfTwoAndTheirNeighbours) {
+  for (std::uint32_t exponent = 9; exponent <= 16; ++exponent) {
+    for (const std::uint32_t size : {(1u << exponent) - 1, 1u << exponent, (1u << exponent) + 1}) {
+      BuildOptions options;
+      options.radius = 4;
+      expect_equal(random_triangles(size, size), options, std::to_string(size) + " triangles");
+    }
+  }
+}
+
+struct Variant {
+  const char* name;
+  BuildOptions options;
+};
+
+class LockstepVariants : public DeviceTest, public testing::WithParamInterface<Variant> {};
+
+TEST_P(LockstepVariants, SameBits) {
+  expect_equal(random_triangles(30000, 7), GetParam().options, GetParam().name);
+}
+
+BuildOptions variant(std::uint32_t radius, std::uint32_t bits, bool lookback = true,
+                     std::uint32_t turns = 16) {
+  return {radius, bits, lookback, turns};
+}
+
+INSTANTIATE_TEST_SUITE_P(Options, LockstepVariants,
+                         testing::Values(Variant{"radius1", variant(1, 30)},
+                                         Variant{"radius2", variant(2, 60)},
+                                         Variant{"radius8", variant(8, 30)},
+                                         Variant{"radius16", variant(16, 60)},
+                                         Variant{"radius100", variant(100, 30)},
+                                         Variant{"without_lookback", variant(8, 30, false)},
+                                         Variant{"without_lookback_60_bits", variant(8, 60, false)},
+                                         Variant{"no_polls_so_fallbacks", variant(8, 30, true, 0)}),
+                         [](const auto& info) { return info.param.name; });
+
+class LockstepHardCases : public DeviceTest, public testing::WithParamInterface<std::string_view> {};
+
+TEST_P(LockstepHardCases, SameBits) {
+  const HardCase* const hard_case = find_hard_case(GetParam());
+  const std::uint32_t count = std::min(hard_case->default_triangle_count, 20000u);
+  expect_equal(scene_arrays(hard_case->make(count, 1)).triangles, {}, std::string(GetParam()));
+}
+
+std::vector<std::string_view> hard_case_names() {
+  std::vector<std::string_view> names;
+  for (const HardCase& hard_case : hard_cases()) names.push_back(hard_case.name);
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Cases, LockstepHardCases, testing::ValuesIn(hard_case_names()),
+                         [](const auto& info) {
+                           std::string name(info.param);
+                           std::ranges::replace(name, '-', '_');
+                           return name;
+                         });
+
+TEST_F(Lockstep, WholeFrame) {
+  const Scene scene = find_hard_case("nested")->make(3000, 1);
+  const SceneArrays arrays = scene_arrays(scene);
+  for (const bool brute_force : {false, true}) {
+    Layout layout(test_device().properties().max_block_bytes);
+    const BuildPlan build = plan_build(layout, static_cast<std::uint32_t>(arrays.triangles.size()), {});
+    TraceOptions options = test_trace_options(61, 47);
+    options.samples = 3;
+    options.brute_force = brute_force;
+    const TracePlan trace =
+        plan_trace(layout, build, static_cast<std::uint32_t>(arrays.materials.size()), options);
+    LockstepExecutor executor(test_device(), layout);
+    upload_frame(executor, build, trace, arrays, make_film(frame_scene(scene, 61.0f / 47), 61, 47, 3));
+    // A division may round otherwise on a GPU; elsewhere every bit is the same.
+    LockstepExecutor::Tolerate tolerate;
+    if (test_device().properties().type != DeviceType::cpu) {
+      tolerate = [](const Difference& difference) {
+        return difference.slot == "hits" || difference.slot == "radiance";
+      };
+    }
+    const auto difference = executor.run(
+        [&](Chain& chain) {
+          append_build(chain, build);
+          append_trace(chain, build, trace);
+        },
+        tolerate);
+    EXPECT_FALSE(difference) << difference->stage << " " << difference->slot << "[" << difference->index
+                             << "]";
+    EXPECT_GT(executor.cpu().read(trace.counters)[0].hits.x, 0u);
+  }
+}
+
+// --- Planted faults: a twin that does its work and one thing wrong.
+
+template <const auto* stage, auto spoil>
+StageDeclaration faulty() {
+  StageDeclaration declaration = *stage;
+  declaration.twin = [](const void* args) {
+    stage->twin(args);
+    spoil(args);
+  };
+  return declaration;
+}
+
+template <class Args>
+Args args_of(const void* args) {
+  return *static_cast<const Args*>(args);
+}
+
+struct Fault {
+  const char* stage;
+  const char* slot;
+  StageDeclaration declaration;
+};
+
+void wrong_shift(const void* args) {
+  auto sort = args_of<SortPassArgs>(args);
+  sort.lookback = 0;
+  sort.pass = (sort.pass + 1) % 4;
+  for (uint digit = 0; digit < SORT_DIGITS; ++digit) sort.keys_out[digit % sort.count] >>= sort.pass;
+}
+
+std::vector<Fault> faults() {
+  return {
+      {"primitive_bounds", "boxes",
+       faulty<&stages::primitive_bounds,
+              [](const void* args) {
+                const auto a = args_of<PrimitiveBoundsArgs>(args);
+                a.boxes[a.triangle_count].box_min.x = 1;  // one past the end
+              }>()},
+      {"morton_codes", "keys_a",
+       faulty<&stages::morton_codes,
+              [](const void* args) { args_of<MortonCodesArgs>(args).keys[5] <<= 1; }>()},
+      {"sort_histogram", "histogram",
+       faulty<&stages::sort_histogram,
+              [](const void* args) { ++args_of<SortHistogramArgs>(args).histogram[0]; }>()},
+      {"sort_digit_scan", "histogram",
+       faulty<&stages::sort_digit_scan,
+              [](const void* args) { ++args_of<SortDigitScanArgs>(args).histogram[255]; }>()},
+      {"sort_pass", "keys_b", faulty<&stages::sort_pass, wrong_shift>()},
+      {"ploc_leaves", "clusters_even",
+       faulty<&stages::ploc_leaves,
+              [](const void* args) {
+                const auto a = args_of<PlocLeavesArgs>(args);
+                a.clusters[a.triangle_count].height = 1;  // one past the end
+              }>()},
+      {"ploc_nearest", "nearest",
+       faulty<&stages::ploc_nearest,
+              [](const void* args) { args_of<PlocNearestArgs>(args).nearest[3] ^= 1; }>()},
+      {"ploc_merge", "rounds",
+       faulty<&stages::ploc_merge,
+              [](const void* args) {
+                const auto a = args_of<PlocMergeArgs>(args);
+                ++a.rounds[a.round + 1].merged_before;
+              }>()},
+      {"ploc_finish", "nodes",
+       faulty<&stages::ploc_finish,
+              [](const void* args) { ++args_of<PlocFinishArgs>(args).nodes[0].height; }>()},
+  };
+}
+
+TEST_F(Lockstep, NamesAPlantedFaultByStageAndSlot) {
+  const std::vector<Triangle> triangles = random_triangles(3000, 1);
+  for (const Fault& fault : faults()) {
+    const auto difference = build_in_lockstep(triangles, {}, [&](std::vector<Step>& steps) {
+      for (Step& step : steps) {
+        if (step.stage && std::string_view(step.stage->name) == fault.stage) step.stage = &fault.declaration;
+      }
+    });
+    ASSERT_TRUE(difference) << fault.stage << ": not noticed";
+    EXPECT_EQ(difference->stage, fault.stage);
+    EXPECT_EQ(difference->slot, fault.slot) << "in " << fault.stage;
+  }
+}
+
+}  // namespace
+}  // namespace coppice

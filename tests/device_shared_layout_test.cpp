@@ -1,0 +1,60 @@
+// Every struct that kernels and host share has the same layout on both sides.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "stages/stages.h"
+#include "support/fields.h"
+#include "support/spirv_layout.h"
+
+namespace coppice {
+namespace {
+
+template <class T>
+void expect_same_layout(const char* name, std::set<std::string>& seen) {
+  for (const StageDeclaration* stage : all_stages()) {
+    const auto layouts = struct_layouts(stage->kernel);
+    const auto found = layouts.find(name);
+    if (found == layouts.end() || found->second.offsets.empty()) continue;
+    seen.insert(name);
+    EXPECT_EQ(found->second.offsets, field_offsets<T>()) << name << " in " << stage->name;
+    if (found->second.array_stride) {
+      EXPECT_EQ(found->second.array_stride, sizeof(T)) << name << " in " << stage->name;
+    }
+  }
+}
+
+#define EXPECT_SAME_LAYOUT(T) expect_same_layout<T>(#T, seen)
+
+TEST(SharedLayout, ArgsOfEveryStage) {
+  std::set<std::string> seen;
+  std::size_t structs = 0;
+#define COPPICE_CHECK_ARGS(stem, Args) EXPECT_SAME_LAYOUT(Args);
+  COPPICE_STAGES(COPPICE_CHECK_ARGS)
+#undef COPPICE_CHECK_ARGS
+  std::set<std::string> expected;
+#define COPPICE_NAME_ARGS(stem, Args) expected.insert(#Args);
+  COPPICE_STAGES(COPPICE_NAME_ARGS)
+#undef COPPICE_NAME_ARGS
+  structs = expected.size();
+  EXPECT_EQ(seen.size(), structs) << "an Args struct was found in no kernel";
+}
+
+TEST(SharedLayout, ElementsOfEverySlot) {
+  std::set<std::string> seen;
+  EXPECT_SAME_LAYOUT(Triangle);
+  EXPECT_SAME_LAYOUT(Aabb);
+  EXPECT_SAME_LAYOUT(Node);
+  EXPECT_SAME_LAYOUT(BuildState);
+  EXPECT_SAME_LAYOUT(PlocRound);
+  EXPECT_SAME_LAYOUT(Ray);
+  EXPECT_SAME_LAYOUT(Hit);
+  EXPECT_SAME_LAYOUT(Film);
+  EXPECT_SAME_LAYOUT(SurfaceMaterial);
+  EXPECT_SAME_LAYOUT(Lighting);
+  EXPECT_SAME_LAYOUT(TraceCounters);
+  EXPECT_EQ(seen.size(), 11u);
+}
+
+}  // namespace
+}  // namespace coppice

@@ -1,0 +1,37 @@
+#include "support/test_device.h"
+
+#include <random>
+
+namespace coppice {
+
+Device& test_device() {
+  static Device device({"", true, false});
+  return device;
+}
+
+void DeviceTest::TearDown() {
+  for (const std::string& message : test_device().take_validation_messages()) ADD_FAILURE() << message;
+}
+
+TraceOptions test_trace_options(std::uint32_t width, std::uint32_t height) {
+  TraceOptions options;
+  options.width = width;
+  options.height = height;
+  if (const std::uint32_t limit = test_device().properties().loop_turn_limit)
+    options.max_turns = limit - 1000;
+  return options;
+}
+
+std::vector<Triangle> random_triangles(std::uint32_t count, std::uint32_t seed, float size) {
+  std::mt19937 random(seed);
+  const auto next = [&] { return static_cast<float>(random() >> 8) / 16777216.0f; };
+  std::vector<Triangle> triangles(count);
+  for (Triangle& t : triangles) {
+    t.a = {next(), next(), next()};
+    t.b = t.a + vec3(next(), next(), next()) * size;
+    t.c = t.a + vec3(next(), next(), next()) * size;
+  }
+  return triangles;
+}
+
+}  // namespace coppice
