@@ -81,7 +81,7 @@ void main() {
   [[dont_unroll]] while (round.cluster_count > 1u && round_index < args.rounds_bound) {
     find_neighbours(i, round.cluster_count, round.pair_all != 0u, normalisation);
     uint merged = merge(i, round.cluster_count, round.merged_before, active_count);
-    round = next_round(round.cluster_count, round.merged_before, merged);
+    round = round_after(round_index, round.cluster_count, round.merged_before, merged);
     ++round_index;
     if (i == 0u) args.rounds.at[round_index] = round;
   }

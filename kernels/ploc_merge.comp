@@ -82,5 +82,5 @@ void main() {
   }
   place_tile(tile, round, prefix);
   if (tile + 1u == round.merge_groups.x && gl_LocalInvocationIndex == 0u)
-    args.rounds.at[args.round + 1u] = next_round(round.cluster_count, round.merged_before, prefix.x + sums.x);
+    args.rounds.at[args.round + 1u] = round_after(args.round, round.cluster_count, round.merged_before, prefix.x + sums.x);
 }

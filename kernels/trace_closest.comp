@@ -13,6 +13,7 @@ layout(push_constant, scalar) uniform Push { TraceClosestArgs args; };
 // that ends long loops by itself.
 layout(constant_id = 0) const uint TRACE_MAX_TURNS = 0xffffffffu;
 layout(constant_id = 1) const uint TRACE_VISITS = 1u;
+layout(constant_id = 2) const uint TRACE_STACK = TRACE_STACK_LIMIT;  // entries, as in the arguments
 
 const uint NO_PAIR = 0u;  // the root is no child
 

@@ -57,9 +57,8 @@ int run_lockstep(const Options& options) {
   const TracePlan trace = plan_trace(layout, build, static_cast<std::uint32_t>(arrays.materials.size()),
                                      device.trace_options(options));
   LockstepExecutor executor(device.device, layout);
-  const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
   upload_frame(executor, build, trace, arrays,
-               make_film(frame_scene(scene, aspect), options.width, options.height, options.samples));
+               make_film(scene, options.camera, options.width, options.height, options.samples));
 
   HitTolerance tolerance;
   const bool exact_trace = device.device.properties().type == DeviceType::cpu;

@@ -41,10 +41,20 @@ void print_warnings(const Scene& scene) {
   for (const std::string& warning : scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
 }
 
-Film make_film(const Camera& camera, std::uint32_t width, std::uint32_t height, std::uint32_t samples) {
+Film make_film(const Scene& scene, std::span<const float> given, std::uint32_t width, std::uint32_t height,
+               std::uint32_t samples) {
+  Camera camera = frame_scene(scene, static_cast<float>(width) / static_cast<float>(height));
+  if (!given.empty()) {
+    camera.position = {given[0], given[1], given[2]};
+    camera.target = {given[3], given[4], given[5]};
+    camera.up = {0, 1, 0};
+    if (given.size() > 6) camera.vertical_fov_degrees = given[6];
+  }
   using dvec3 = glm::dvec3;
   const dvec3 forward = glm::normalize(dvec3(camera.target) - dvec3(camera.position));
-  const dvec3 right = glm::normalize(glm::cross(forward, dvec3(camera.up)));
+  const bool vertical = std::abs(glm::dot(forward, glm::normalize(dvec3(camera.up)))) > 0.9999;
+  const dvec3 up = vertical ? dvec3(0, 0, 1) : dvec3(camera.up);
+  const dvec3 right = glm::normalize(glm::cross(forward, up));
   const dvec3 down = glm::cross(forward, right);
   const double half_height = std::tan(glm::radians(double{camera.vertical_fov_degrees}) / 2);
   const double half_width = half_height * width / height;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "pipeline/trace.h"
@@ -20,7 +21,10 @@ SceneArrays scene_arrays(const Scene& scene);
 // The scene's warnings, a line each, to stderr.
 void print_warnings(const Scene& scene);
 
-Film make_film(const Camera& camera, std::uint32_t width, std::uint32_t height, std::uint32_t samples);
+// `camera`: eye, target and, if given, the vertical field of view in degrees; empty: one that frames the
+// scene.
+Film make_film(const Scene& scene, std::span<const float> camera, std::uint32_t width, std::uint32_t height,
+               std::uint32_t samples);
 
 // Uploads all that a build and a trace read, through any executor.
 template <class Executor>

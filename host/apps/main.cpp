@@ -1,5 +1,7 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -25,6 +27,18 @@ std::string parse_size(Options& options) {
   const auto in_range = [](std::uint32_t side) { return side >= 1 && side <= max_side; };
   if (parsed && in_range(options.width) && in_range(options.height)) return {};
   return "--size: '" + options.size + "' is not WxH with sides of 1 to " + std::to_string(max_side);
+}
+
+// Eye and target apart, all finite, the field of view in (0, 180).
+std::string check_camera(const Options& options) {
+  const std::vector<float>& camera = options.camera;
+  if (camera.empty()) return {};
+  const bool finite = std::ranges::all_of(camera, [](float x) { return std::isfinite(x); });
+  const bool apart = !std::equal(camera.begin(), camera.begin() + 3, camera.begin() + 3);
+  const bool opens = camera.size() < 7 || (camera[6] > 0 && camera[6] < 180);
+  return finite && apart && opens
+             ? std::string()
+             : "--camera: needs finite eye and target apart, and a field of view in 0 to 180";
 }
 
 void add_common(CLI::App& command, Options& options) {
@@ -66,6 +80,12 @@ void add_ploc(CLI::App& command, Options& options) {
 
 void add_picture(CLI::App& command, Options& options) {
   command.add_option("--size", options.size, "pixels, default 1024x768")->type_name("WxH");
+  command
+      .add_option("--camera", options.camera,
+                  "eye, target and vertical field of view in degrees; default: frames the scene")
+      ->type_name("X,Y,Z,X,Y,Z[,FOV]")
+      ->delimiter(',')
+      ->expected(6, 7);
   command.add_option("--spp", options.samples, "samples per pixel")
       ->check(CLI::Range(1u, 65536u))
       ->capture_default_str();
@@ -74,7 +94,7 @@ void add_picture(CLI::App& command, Options& options) {
 int run(int argc, char** argv) {
   Options options;
   CLI::App app("GPU-resident BVH builder and ray tracer");
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);
   app.set_help_all_flag("--help-all", "Help of all commands");
 
   CLI::App* const render = app.add_subcommand("render", "build, trace, write the picture");
@@ -101,7 +121,10 @@ int run(int argc, char** argv) {
 
   try {
     app.parse(argc, argv);
-    if (const std::string error = parse_size(options); !error.empty()) throw CLI::ValidationError(error);
+    if (app.get_subcommands().empty()) throw CLI::RequiredError("A command (see --help)");
+    for (const std::string& error : {parse_size(options), check_camera(options)}) {
+      if (!error.empty()) throw CLI::ValidationError(error);
+    }
   } catch (const CLI::Success& help) {
     return app.exit(help);
   } catch (const CLI::ParseError& error) {

@@ -25,6 +25,8 @@ struct Options {
   std::uint32_t width = 1024, height = 768;
   std::uint32_t samples = 1;
   std::string tracer = "gpu";
+  std::vector<float>
+      camera;  // eye, target and, if given, the vertical field of view in degrees; empty: the scene's
 };
 
 // One function a command. Each returns the exit status, or throws InputError, DeviceError or LayoutError.

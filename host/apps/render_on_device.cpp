@@ -20,9 +20,9 @@ void warm_up(GpuExecutor& executor, const BuildPlan& build, TracePlan trace, boo
 }
 
 void upload_tree(GpuExecutor& executor, const BuildPlan& plan, const Bvh& bvh) {
-  if (!bvh.nodes.empty() && bvh.nodes[0].height > TRACE_STACK) {
+  if (!bvh.nodes.empty() && bvh.nodes[0].height > TRACE_STACK_LIMIT) {
     throw DeviceError("the tree is " + std::to_string(bvh.nodes[0].height) +
-                      " levels deep, the device's tracer takes " + std::to_string(TRACE_STACK));
+                      " levels deep, the device's tracer takes " + std::to_string(TRACE_STACK_LIMIT));
   }
   BuildState state{};
   state.active_count = bvh.active_count;
@@ -42,9 +42,8 @@ RenderReport render_on_device(CheckedDevice& device, const Scene& scene, const O
   const TracePlan trace =
       plan_trace(layout, build, static_cast<std::uint32_t>(arrays.materials.size()), trace_options);
   GpuExecutor executor(device.device, layout);
-  const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
   upload_frame(executor, build, trace, arrays,
-               make_film(frame_scene(scene, aspect), options.width, options.height, options.samples));
+               make_film(scene, options.camera, options.width, options.height, options.samples));
 
   RenderReport report;
   report.build = report_for(options, scene);

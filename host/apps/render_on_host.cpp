@@ -46,9 +46,8 @@ RenderReport render_on_host(CheckedDevice* device, const Scene& scene, const Opt
   const TracePlan trace =
       plan_trace(layout, build, static_cast<std::uint32_t>(arrays.materials.size()), trace_options);
   CpuExecutor executor(layout);
-  const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
   upload_frame(executor, build, trace, arrays,
-               make_film(frame_scene(scene, aspect), options.width, options.height, options.samples));
+               make_film(scene, options.camera, options.width, options.height, options.samples));
 
   Chain chain = executor.chain();
   append_trace(chain, build, trace);

@@ -70,7 +70,7 @@ struct Recorder::Commands {
   void barrier() {
     using Stage = vk::PipelineStageFlagBits2;
     using Access = vk::AccessFlagBits2;
-    const auto stages = Stage::eComputeShader | Stage::eClear;
+    const auto stages = Stage::eComputeShader | Stage::eAllTransfer;
     const vk::MemoryBarrier2 memory(stages, Access::eShaderStorageWrite | Access::eTransferWrite,
                                     stages | Stage::eDrawIndirect,
                                     Access::eShaderStorageRead | Access::eShaderStorageWrite |
@@ -98,7 +98,7 @@ struct Recorder::Commands {
   void end() {
     using Stage = vk::PipelineStageFlagBits2;
     const vk::MemoryBarrier2 memory(
-        Stage::eComputeShader | Stage::eClear,
+        Stage::eComputeShader | Stage::eAllTransfer,
         vk::AccessFlagBits2::eShaderStorageWrite | vk::AccessFlagBits2::eTransferWrite, Stage::eHost,
         vk::AccessFlagBits2::eHostRead | vk::AccessFlagBits2::eHostWrite);
     stamp();

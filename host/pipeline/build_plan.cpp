@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <map>
 #include <stdexcept>
 #include <string>
 
@@ -12,24 +11,13 @@ namespace {
 
 std::uint32_t divide_up(std::uint32_t a, std::uint32_t b) { return a / b + (a % b != 0); }
 
-std::uint32_t worst_rounds(std::uint32_t clusters, std::uint32_t target,
-                           std::map<std::uint32_t, std::uint32_t>& known) {
-  if (clusters <= target || clusters <= 1) return 0;
-  if (const auto found = known.find(clusters); found != known.end()) return found->second;
-  // Either the round merges its share, or it merges at least one pair and the next one pairs all that are
-  // left.
-  const std::uint32_t after_share = clusters - divide_up(clusters, PLOC_SLOW_ROUND);
-  const std::uint32_t after_pairing = divide_up(clusters - 1, 2);
-  const std::uint32_t rounds =
-      std::max(1 + worst_rounds(after_share, target, known), 2 + worst_rounds(after_pairing, target, known));
-  return known[clusters] = rounds;
-}
-
 }  // namespace
 
 std::uint32_t ploc_rounds_bound(std::uint32_t clusters, std::uint32_t target) {
-  std::map<std::uint32_t, std::uint32_t> known;
-  return worst_rounds(clusters, target, known);
+  if (clusters <= target) return 0;
+  std::uint32_t epoch = 0;
+  while (clusters >> epoch > target) ++epoch;
+  return PLOC_EPOCH_ROUNDS * epoch + 2;
 }
 
 BuildPlan plan_build(Layout& layout, std::uint32_t triangle_count, const BuildOptions& options) {

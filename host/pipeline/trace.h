@@ -16,6 +16,8 @@ struct TraceOptions {
   // driver ends long loops by itself.
   std::uint32_t max_turns = 0xffffffffu;
   std::uint32_t visits_per_turn = 1;
+  // Entries of the traversal stack; a tree that is higher is refused by name.
+  std::uint32_t stack_entries = TRACE_STACK_LIMIT;
   bool directional_light = true;  // what the scene calls for
 };
 

@@ -49,7 +49,7 @@ void ploc_finish(const PlocFinishArgs& args) {
       }
     }
     clusters = std::move(next);
-    args.rounds[index + 1] = round_after(round, merged);
+    args.rounds[index + 1] = round_after(index, round, merged);
   }
   state.round_count = index;
   if (clusters.size() > 1) state.error_word |= ERROR_PLOC_ROUNDS;

@@ -31,7 +31,7 @@ void ploc_merge(const PlocMergeArgs& args) {
       ++round.ticket;
     }
   }
-  args.rounds[args.round + 1] = round_after(round, prefix[0]);
+  args.rounds[args.round + 1] = round_after(args.round, round, prefix[0]);
 }
 
 }  // namespace coppice::twins

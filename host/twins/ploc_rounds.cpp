@@ -22,9 +22,12 @@ PlocRound make_round(uint cluster_count, uint merged_before, bool pair_all) {
   return round;
 }
 
-PlocRound round_after(const PlocRound& round, uint merged) {
-  return make_round(round.cluster_count - merged, round.merged_before + merged,
-                    merged * PLOC_SLOW_ROUND < round.cluster_count);
+PlocRound round_after(uint index, const PlocRound& round, uint merged) {
+  const uint left = round.cluster_count - merged;
+  const std::uint64_t active_count = std::uint64_t{left} + round.merged_before + merged;
+  const bool behind = std::uint64_t{left} << ((index + 1) / PLOC_EPOCH_ROUNDS) > active_count;
+  const bool slow = std::uint64_t{merged} * PLOC_SLOW_ROUND < round.cluster_count;
+  return make_round(left, round.merged_before + merged, behind || slow);
 }
 
 Node make_parent(const Node& left, const Node& right, uint first_child) {

@@ -7,8 +7,8 @@ namespace coppice::twins {
 // How a round is entered: its counts, and the workgroups of its dispatches (none once the finish takes over).
 PlocRound make_round(uint cluster_count, uint merged_before, bool pair_all);
 
-// The round after `round`, in which `merged` pairs merged.
-PlocRound round_after(const PlocRound& round, uint merged);
+// The round after the one with this index, in which `merged` pairs merged.
+PlocRound round_after(uint index, const PlocRound& round, uint merged);
 
 // The parent of two clusters, whose children stand at first_child and the place after it.
 Node make_parent(const Node& left, const Node& right, uint first_child);

@@ -51,7 +51,7 @@ uint trace(const TraceClosestArgs& args, const Ray& ray, Hit& hit) {
 void trace_closest(const TraceClosestArgs& args) {
   TraceCounters& counters = args.counters[0];
   const bool empty = args.state[0].active_count == 0;
-  if (!empty && args.nodes[0].height > TRACE_STACK) {
+  if (!empty && args.nodes[0].height > args.stack_entries) {
     args.state[0].error_word |= ERROR_TREE_TOO_DEEP;
     return;
   }

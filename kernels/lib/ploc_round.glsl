@@ -12,8 +12,11 @@ PlocRound planned_round(uint cluster_count, uint merged_before, bool pair_all) {
                    dispatched ? uvec3(1u) : uvec3(0u), 0u, 0u, 0u);
 }
 
-PlocRound next_round(uint cluster_count, uint merged_before, uint merged) {
-  return planned_round(cluster_count - merged, merged_before + merged, merged * PLOC_SLOW_ROUND < cluster_count);
+PlocRound round_after(uint round_index, uint cluster_count, uint merged_before, uint merged) {
+  uint active_count = cluster_count + merged_before;
+  bool behind = cluster_count - merged > active_count >> ((round_index + 1u) / PLOC_EPOCH_ROUNDS);
+  bool slow = merged < (cluster_count + PLOC_SLOW_ROUND - 1u) / PLOC_SLOW_ROUND;
+  return planned_round(cluster_count - merged, merged_before + merged, behind || slow);
 }
 
 // In a round that pairs all clusters the partner is fixed; the last of an odd number has none but itself.

@@ -1,0 +1,195 @@
+// The command line as others' scripts call it: exit status, one clear line for bad input, nothing
+// half-written, JSON.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace coppice {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+  int status;
+  std::string out, err;
+};
+
+class Command : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("coppice_" + std::to_string(getpid()));
+    fs::create_directories(folder_);
+    fs::current_path(folder_);
+    write("one.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  }
+  void TearDown() override {
+    fs::current_path(fs::temp_directory_path());
+    fs::remove_all(folder_);
+  }
+
+  static void write(const std::string& name, const std::string& text) {
+    std::ofstream(name, std::ios::binary) << text;
+  }
+
+  static std::string read(const std::string& name) {
+    std::stringstream text;
+    text << std::ifstream(name).rdbuf();
+    return text.str();
+  }
+
+  static Outcome run(const std::string& arguments) {
+    const std::string command =
+        std::string("timeout 120 ") + COPPICE_PROGRAM + " " + arguments + " >stdout.txt 2>stderr.txt";
+    const int status = std::system(command.c_str());
+    return {WEXITSTATUS(status), read("stdout.txt"), read("stderr.txt")};
+  }
+
+  // Exit status, one line on stderr that holds `part`, and no picture.
+  static void expect_refused(const std::string& arguments, int status, const std::string& part) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.status, status) << arguments;
+    EXPECT_NE(outcome.err.find(part), std::string::npos) << arguments << ": " << outcome.err;
+    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << arguments << ": " << outcome.err;
+    EXPECT_FALSE(fs::exists("out.png")) << arguments;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(Command, BadScenesAreRefusedWithStatus1) {
+  write("empty.obj", "");
+  write("binary.obj", std::string("\x7f"
+                                  "ELF\0\0\0",
+                                  7));
+  write("index.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
+  write("short.obj", "v 0 0 0\nv 1 0 0\nf 1 2\n");
+  fs::create_directory("folder.obj");
+  const struct {
+    const char *scene, *part;
+  } cases[] = {{"missing.obj", "missing.obj"}, {"folder.obj", "folder.obj"}, {"empty.obj", "empty.obj"},
+               {"binary.obj", "binary.obj"},   {"index.obj", "index.obj:4"}, {"short.obj", "short.obj:3"},
+               {"nonsense", "nonsense"},       {"scatter:0", "scatter:0"},   {"hard:nonsense", "nonsense"}};
+  for (const auto& c : cases) expect_refused(std::string("render ") + c.scene + " -o out.png", 1, c.part);
+}
+
+TEST_F(Command, BadFlagsAreRefusedWithStatus2) {
+  const struct {
+    const char *arguments, *part;
+  } cases[] = {{"render one.obj -o out.png --builder nonsense", "nonsense"},
+               {"render one.obj -o out.png --nonsense", "nonsense"},
+               {"render one.obj -o out.png --radius 0", "--radius"},
+               {"render one.obj -o out.png --radius 101", "--radius"},
+               {"render one.obj -o out.png --morton-bits 31", "--morton-bits"},
+               {"render one.obj -o out.png --size 0x0", "--size"},
+               {"render one.obj -o out.png --size 100000x100000", "--size"},
+               {"render one.obj -o out.png --size 64", "--size"},
+               {"render one.obj -o out.png --spp 0", "--spp"},
+               {"render one.obj -o out.png --camera 1,2", "--camera"},
+               {"render one.obj two.obj -o out.png", "two.obj"},
+               {"build one.obj --runs 0", "--runs"},
+               {"nonsense", "nonsense"},
+               {"", "command"}};
+  for (const auto& c : cases) expect_refused(c.arguments, 2, c.part);
+}
+
+TEST_F(Command, UnknownDeviceAndUnwritableOutputAreNamed) {
+  expect_refused("render one.obj -o out.png --device nonsense", 1, "nonsense");
+  expect_refused("render one.obj -o out.png --device 99", 1, "99");
+  expect_refused("render one.obj -o nowhere/out.png", 1, "nowhere/out.png");
+  expect_refused("build one.obj --json nowhere/report.json", 1, "nowhere/report.json");
+}
+
+TEST_F(Command, ARenderThatFailsLeavesAnOlderPictureAlone) {
+  write("old.png", "old");
+  EXPECT_EQ(run("render missing.obj -o old.png").status, 1);
+  EXPECT_EQ(read("old.png"), "old");
+}
+
+TEST_F(Command, BuildersReportTheSameTree) {
+  nlohmann::json reports[2];
+  int i = 0;
+  for (const char* builder : {"gpu-ploc", "ploc"}) {
+    const Outcome outcome = run(std::string("build terrain:5000 --json - --runs 1 --builder ") + builder);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    reports[i++] = nlohmann::json::parse(outcome.out);
+  }
+  for (const char* key : {"scene",   "triangles", "inactive",   "builder",      "radius",       "morton_bits",
+                          "device",  "driver",    "build_ms",   "build_ms_min", "build_ms_max", "runs",
+                          "wall_ms", "kernels",   "dispatches", "rounds",       "rounds_bound", "nodes",
+                          "leaves",  "depth",     "sah",        "references",   "tree_hash"}) {
+    EXPECT_TRUE(reports[0].contains(key)) << key;
+  }
+  for (const char* key : {"tree_hash", "sah", "depth", "rounds", "nodes"})
+    EXPECT_EQ(reports[0][key], reports[1][key]);
+  EXPECT_EQ(reports[0]["nodes"], 9999);
+  EXPECT_EQ(reports[0]["tree_hash"].get<std::string>().size(), 16u);
+}
+
+TEST_F(Command, RendersOfAllBuildersAndTracersAgree) {
+  std::vector<std::string> hashes;
+  std::uint64_t hits = 0;
+  for (const char* how : {"--builder gpu-ploc", "--builder ploc", "--builder none"}) {
+    const Outcome outcome =
+        run(std::string("render terrain:500 --size 64x48 -o out.png --validate --json - ") + how);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const auto report = nlohmann::json::parse(outcome.out);
+    EXPECT_EQ(report["rays"]["primary"], 64 * 48);
+    EXPECT_EQ(report["effects"], nlohmann::json({"ambient", "directional_light"}));
+    EXPECT_GT(fs::file_size("out.png"), 100u);
+    hashes.push_back(report["image_hash"]);
+    hits = report["hits"];
+  }
+  EXPECT_EQ(hashes[0], hashes[1]);
+  EXPECT_EQ(hashes[0], hashes[2]);
+  const Outcome cpu = run("render terrain:500 --size 64x48 -o out.png --tracer cpu --builder ploc --json -");
+  ASSERT_EQ(cpu.status, 0) << cpu.err;
+  EXPECT_NEAR(nlohmann::json::parse(cpu.out)["hits"].get<double>(), static_cast<double>(hits), 3);
+}
+
+TEST_F(Command, LockstepFindsNoDifference) {
+  const Outcome outcome = run("lockstep hard:nested:500 --size 32x24 --json -");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto report = nlohmann::json::parse(outcome.out);
+  EXPECT_TRUE(report["equal"]);
+  EXPECT_TRUE(report["first_difference"].is_null());
+  EXPECT_GT(report["stages"], 10);
+}
+
+TEST_F(Command, InactiveAndMissingTrianglesStillGiveAPicture) {
+  write("none.obj", "v 0 0 0\n");
+  for (const char* scene :
+       {"none.obj", "one.obj", "hard:all-non-finite", "hard:non-finite", "hard:huge", "hard:tiny"}) {
+    for (const char* how : {"", " --builder ploc --tracer cpu", " --builder none"}) {
+      const Outcome outcome = run(std::string("render ") + scene + " --size 32x24 -o out.png" + how);
+      EXPECT_EQ(outcome.status, 0) << scene << how << ": " << outcome.err;
+      EXPECT_TRUE(fs::exists("out.png"));
+      fs::remove("out.png");
+    }
+  }
+}
+
+TEST_F(Command, TraceEventsNameTheKernels) {
+  ASSERT_EQ(run("build terrain:5000 --runs 1 --trace-events events.json").status, 0);
+  const auto events = nlohmann::json::parse(read("events.json"))["traceEvents"];
+  const auto named = [&](const char* name) {
+    return std::ranges::any_of(
+        events, [&](const auto& event) { return event["name"] == name && event["ph"] == "X"; });
+  };
+  for (const char* name : {"primitive_bounds", "sort_pass", "ploc_merge", "ploc_finish"})
+    EXPECT_TRUE(named(name)) << name;
+}
+
+TEST_F(Command, ListsScenesAndDevices) {
+  const auto scenes = nlohmann::json::parse(run("scenes --json -").out);
+  EXPECT_EQ(scenes[0]["name"], "grove");
+  const auto devices = nlohmann::json::parse(run("devices --json -").out);
+  EXPECT_FALSE(devices.empty());
+}
+
+}  // namespace
+}  // namespace coppice
