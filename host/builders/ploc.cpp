@@ -123,7 +123,8 @@ Bvh build_ploc(std::span<const Triangle> triangles, const PlocConfig& config) {
     const std::size_t count = clustering.count();
     const std::size_t merged = pairing ? clustering.merge_pairs() : clustering.merge_nearest();
     ++bvh.rounds;
-    const bool behind = std::uint64_t{clustering.count()} << bvh.rounds / PLOC_EPOCH_ROUNDS > bvh.active_count;
+    const bool behind =
+        std::uint64_t{clustering.count()} << bvh.rounds / PLOC_EPOCH_ROUNDS > bvh.active_count;
     pairing = behind || merged * PLOC_SLOW_ROUND < count;
   }
   bvh.nodes = clustering.take_nodes();

@@ -24,7 +24,8 @@ void append_closest_hits(Chain& chain, const BuildPlan& build, const TracePlan& 
   const auto counters = chain.at(plan.counters);
   if (!plan.options.brute_force) {
     chain.run(stages::trace_closest,
-              {chain.at(build.nodes), triangles, rays, hits, counters, chain.at(build.state), ray_count, plan.options.stack_entries},
+              {chain.at(build.nodes), triangles, rays, hits, counters, chain.at(build.state), ray_count,
+               plan.options.stack_entries},
               groups, {plan.options.max_turns, plan.options.visits_per_turn, plan.options.stack_entries});
     return;
   }

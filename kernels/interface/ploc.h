@@ -7,8 +7,8 @@ INTERFACE_BEGIN
 
 const uint PLOC_MAX_RADIUS = 100;
 // Two rules bound the rounds, see docs/numerics.md; scenes as people make them do not meet either.
-// Round t pairs all clusters, whatever their distance, if more are left than active_count >> (t / PLOC_EPOCH_ROUNDS);
-// and if the round before it merged fewer than 1 / PLOC_SLOW_ROUND of its clusters.
+// Round t pairs all clusters, whatever their distance, if more are left than active_count >> (t /
+// PLOC_EPOCH_ROUNDS); and if the round before it merged fewer than 1 / PLOC_SLOW_ROUND of its clusters.
 const uint PLOC_EPOCH_ROUNDS = 12;
 const uint PLOC_SLOW_ROUND = 128;
 

@@ -8,7 +8,7 @@ const uint TRACE_GROUP = 64;
 const uint SHADE_GROUP = 64;
 const uint RESOLVE_GROUP = 64;
 
-const uint TRACE_STACK_LIMIT = 256;  // most entries of a traversal stack
+const uint TRACE_STACK_LIMIT = 256;    // most entries of a traversal stack
 const uint BRUTE_FORCE_SLICE = 16384;  // triangles one dispatch tests, below old lavapipe's loop limit
 const uint NO_TRIANGLE = 0xffffffffu;
 
