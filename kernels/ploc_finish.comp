@@ -4,6 +4,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/ploc.h"
+#define PLOC_RUN 1
 #define PLOC_TILE_BOXES PLOC_FINISH_CLUSTERS
 #include "lib/ploc_round.glsl"
 #include "lib/ploc_search.glsl"
@@ -24,19 +25,24 @@ uint first_finish_round() {
 void find_neighbours(uint i, uint cluster_count, bool pair_all, Normalisation normalisation) {
   if (i < cluster_count) cache_box(i, clusters[i], normalisation);
   barrier();
-  if (i < cluster_count)
-    nearest[i] = pair_all ? paired_with(i, cluster_count) : find_nearest(i, i, cluster_count, args.radius);
+  if (i < cluster_count) {
+    uint found[PLOC_RUN];
+    if (pair_all) found[0] = paired_with(i, cluster_count);
+    else find_nearest(i, i, cluster_count, min(args.radius, cluster_count - 1u), found);
+    nearest[i] = found[0];
+  }
   barrier();
 }
 
 // Exclusive and total sums over the workgroup of two 16-bit counters a word.
-uvec2 scan_workgroup(uint word) {
+uvec2 scan_workgroup(uint word, uint cluster_count) {
   uint before = subgroupExclusiveAdd(word);
   uint sum = subgroupAdd(word);
   if (subgroupElect()) subgroup_sums[gl_SubgroupID] = sum;
   barrier();
   uint total = 0u;
-  [[dont_unroll]] for (uint s = 0u; s < gl_NumSubgroups; ++s) {
+  uint last = (cluster_count + gl_SubgroupSize - 1u) / gl_SubgroupSize;  // the others hold no cluster
+  [[dont_unroll]] for (uint s = 0u; s < last; ++s) {
     if (s == gl_SubgroupID) before += total;
     total += subgroup_sums[s];
   }
@@ -50,7 +56,7 @@ uint merge(uint i, uint cluster_count, uint merged_before, uint active_count) {
   uint j = present ? nearest[i] : 0u;
   bool mutual = present && j != i && nearest[j] == i;
   bool retires = mutual && j < i, merges = mutual && i < j;
-  uvec2 scanned = scan_workgroup((merges ? 0x10000u : 0u) | (retires ? 1u : 0u));
+  uvec2 scanned = scan_workgroup((merges ? 0x10000u : 0u) | (retires ? 1u : 0u), cluster_count);
 
   Node cluster;
   if (present) cluster = clusters[i];
@@ -67,7 +73,7 @@ uint merge(uint i, uint cluster_count, uint merged_before, uint active_count) {
 }
 
 void main() {
-  uint i = gl_LocalInvocationID.x;
+  uint i = gl_SubgroupID * gl_SubgroupSize + gl_SubgroupInvocationID;  // scans rank by it
   uint round_index = first_finish_round();
   PlocRound round = args.rounds.at[round_index];
   uint active_count = args.state.at[0].active_count;
@@ -87,6 +93,6 @@ void main() {
   }
   if (i != 0u) return;
   args.state.at[0].round_count = round_index;
-  if (round.cluster_count > 1u) atomicOr(args.state.at[0].error_word, ERROR_PLOC_ROUNDS);
+  if (round.cluster_count != min(active_count, 1u)) atomicOr(args.state.at[0].error_word, ERROR_PLOC_ROUNDS);
   if (round.cluster_count == 1u) args.nodes.at[0] = clusters[0];
 }

@@ -19,7 +19,7 @@ void sum_tile(uint tile);
 shared uint ticket;
 
 void sum_tile(uint tile) {
-  uvec2 total = count_tile(tile);
+  uvec2 total = sum_fates(find_fates(tile, args.rounds.at[args.round].cluster_count));
   if (gl_LocalInvocationIndex < PLOC_MERGE_SUMS) tile_sums[gl_LocalInvocationIndex] = total[gl_LocalInvocationIndex];
   barrier();
 }
@@ -32,9 +32,7 @@ bool find_tile_prefix(uint tile, out uvec2 prefix) {
   }
   uint fallbacks = lookback(args.tile_status, tile);
   prefix = uvec2(lookback_prefix[0], lookback_prefix[1]);
-  if (fallbacks > LOOKBACK_MAX_FALLBACKS) return false;
-  if (fallbacks > 0u) sum_tile(tile);
-  return true;
+  return fallbacks <= LOOKBACK_MAX_FALLBACKS;
 }
 
 void place_cluster(uint i, bool merges, uint place, uint first_child) {
@@ -48,19 +46,20 @@ void place_cluster(uint i, bool merges, uint place, uint first_child) {
   args.clusters_out.at[place] = cluster;
 }
 
-void place_tile(uint tile, PlocRound round, uvec2 before) {
+void place_tile(uint tile, PlocRound round, Fates fates, uvec2 before) {
   uint active_count = args.state.at[0].active_count;
-  [[dont_unroll]] for (uint s = 0u; s < gl_SubgroupID; ++s) before += subgroup_sums[s];
-  uint i = chunk_first(tile);
-  [[dont_unroll]] for (uint k = 0u; k < PLOC_MERGE_PER_INVOCATION; ++k, i += gl_SubgroupSize) {
-    bvec2 fate = retires_merges(i, round.cluster_count);
-    uvec4 retiring = subgroupBallot(fate.x), merging = subgroupBallot(fate.y);
-    if (i < round.cluster_count && !fate.x) {
-      uint rank = round.merged_before + before.y + subgroupBallotExclusiveBitCount(merging);
-      place_cluster(i, fate.y, i - before.x - subgroupBallotExclusiveBitCount(retiring),
-                    first_child_of(active_count, rank));
+  uint i = first_cluster(tile);
+  [[dont_unroll]] for (uint k = 0u; k < PLOC_MERGE_STEPS; ++k, i += gl_SubgroupSize) {
+    bool retires = bitfieldExtract(fates.retiring, int(k), 1) != 0u;
+    bool merges = bitfieldExtract(fates.merging, int(k), 1) != 0u;
+    uint word = (retires ? 1u : 0u) | (merges ? 0x10000u : 0u);
+    uint sums = subgroupInclusiveAdd(word);
+    if (i < round.cluster_count && !retires) {
+      uvec2 rank = before + uvec2((sums - word) & 0xffffu, (sums - word) >> 16);
+      place_cluster(i, merges, i - rank.x, first_child_of(active_count, round.merged_before + rank.y));
     }
-    before += uvec2(subgroupBallotBitCount(retiring), subgroupBallotBitCount(merging));
+    uint step_sums = subgroupBroadcast(sums, gl_SubgroupSize - 1u);
+    before += uvec2(step_sums & 0xffffu, step_sums >> 16);
   }
 }
 
@@ -73,14 +72,17 @@ void main() {
     barrier();
     tile = ticket;
   }
-  sum_tile(tile);
-  uvec2 sums = uvec2(tile_sums[0], tile_sums[1]);
+  Fates fates = find_fates(tile, round.cluster_count);
+  uvec2 sums = sum_fates(fates);
+  uvec2 before = sums_before();
+  if (gl_LocalInvocationIndex < PLOC_MERGE_SUMS) tile_sums[gl_LocalInvocationIndex] = sums[gl_LocalInvocationIndex];
+  barrier();
   uvec2 prefix;
   if (!find_tile_prefix(tile, prefix)) {
     if (gl_LocalInvocationIndex == 0u) atomicOr(args.state.at[0].error_word, ERROR_PLOC_LOOKBACK);
     return;
   }
-  place_tile(tile, round, prefix);
+  place_tile(tile, round, fates, prefix + before);
   if (tile + 1u == round.merge_groups.x && gl_LocalInvocationIndex == 0u)
     args.rounds.at[args.round + 1u] = round_after(args.round, round.cluster_count, round.merged_before, prefix.x + sums.x);
 }

@@ -4,6 +4,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/ploc.h"
+#define PLOC_RUN PLOC_NEAREST_RUN
 #define PLOC_TILE_BOXES (PLOC_NEAREST_TILE + 2 * PLOC_MAX_RADIUS)
 #include "lib/ploc_round.glsl"
 #include "lib/ploc_search.glsl"
@@ -34,6 +35,10 @@ void main() {
   [[dont_unroll]] for (uint i = halo_first + lane; i < halo_last; i += PLOC_NEAREST_GROUP)
     cache_box(i - halo_first, args.clusters.at[i], normalisation);
   barrier();
-  [[dont_unroll]] for (uint i = first + lane; i < last; i += PLOC_NEAREST_GROUP)
-    args.nearest.at[i] = find_nearest(i, i - halo_first, cluster_count, args.radius);
+  uint i = first + lane * PLOC_RUN;
+  uint nearest[PLOC_RUN];
+  find_nearest(i, i - halo_first, cluster_count, args.radius, nearest);
+  [[unroll]] for (uint k = 0u; k < PLOC_RUN; ++k) {
+    if (i + k < cluster_count) args.nearest.at[i + k] = nearest[k];
+  }
 }

@@ -9,7 +9,7 @@ layout(push_constant, scalar) uniform Push { PlocMergeArgs args; };
 #include "lib/ploc_tile.glsl"
 
 void main() {
-  uvec2 total = count_tile(gl_WorkGroupID.x);
+  uvec2 total = sum_fates(find_fates(gl_WorkGroupID.x, args.rounds.at[args.round].cluster_count));
   if (gl_LocalInvocationIndex < PLOC_MERGE_SUMS)
     args.tile_status.at[gl_WorkGroupID.x * PLOC_MERGE_SUMS + gl_LocalInvocationIndex] = total[gl_LocalInvocationIndex];
 }

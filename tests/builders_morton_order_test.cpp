@@ -87,7 +87,7 @@ TEST(NormalisedSpace, PutsTheLargestCoordinateBelowTwoToTheSixty) {
 
 TEST(NormalisedSpace, SetsNegligibleCoordinatesToZero) {
   const NormalisedSpace normalised(Aabb{vec3(0), vec3(0x1p59f)});
-  EXPECT_EQ(normalised(vec3(0x1p-60f, -0x1p-60f, 0x1.fffffep-61f)), vec3(0x1p-60f, -0x1p-60f, 0));
+  EXPECT_EQ(normalised(vec3(0x1p-40f, -0x1p-40f, 0x1.fffffep-41f)), vec3(0x1p-40f, -0x1p-40f, 0));
 }
 
 TEST(NormalisedSpace, TakesASceneAtTheOrigin) {

@@ -176,7 +176,7 @@ INSTANTIATE_TEST_SUITE_P(SizesRadiiAndBits, BuildPlocOfSoup,
 // The definition, literally.
 std::uint32_t nearest_by_definition(const std::vector<Aabb>& boxes, std::uint32_t i, std::uint32_t radius) {
   const auto count = static_cast<std::uint32_t>(boxes.size());
-  auto least = std::make_tuple(std::numeric_limits<float>::infinity(), 0u, 0u, 0u);
+  auto least = std::make_tuple(std::numeric_limits<float>::infinity(), 0u, 0u);
   std::uint32_t nearest = i;
   for (std::uint32_t j = i < radius ? 0 : i - radius; j < std::min(count, i + radius + 1); ++j) {
     if (j == i) continue;
@@ -187,8 +187,8 @@ std::uint32_t nearest_by_definition(const std::vector<Aabb>& boxes, std::uint32_
     }
     const float area = (e[0] * e[1] + e[1] * e[2]) + e[2] * e[0];
     const std::uint32_t gap = i > j ? i - j : j - i;
-    const std::uint32_t bit = std::min(i, j) >> (std::bit_width(gap) - 1) & 1;
-    const auto key = std::make_tuple(area < 0x1p-100f ? 0.0f : area, gap, bit, std::min(i, j));
+    const std::uint32_t bit = std::min(i, j) >> std::countr_zero(gap) & 1;
+    const auto key = std::make_tuple(area, gap, bit);
     if (key < least) {
       least = key;
       nearest = j;

@@ -5,7 +5,7 @@
 namespace coppice {
 
 // World coordinates times the power of two that puts the scene's largest absolute coordinate into
-// [2^59, 2^60), with magnitudes below 2^-60 set to 0. The product of any two lengths is then neither beyond
+// [2^59, 2^60), with magnitudes below 2^-40 set to 0. The product of any two lengths is then neither beyond
 // the range of float nor denormal, whatever the unit of the scene, and nothing is rounded that is not set to
 // 0. The map is monotonic, so it commutes with unions of boxes.
 class NormalisedSpace {
@@ -22,7 +22,7 @@ class NormalisedSpace {
  private:
   float normalised(float world) const {
     const float scaled = world * factor_ * other_factor_;
-    return scaled < 0x1p-60f && scaled > -0x1p-60f ? 0.0f : scaled;
+    return scaled < 0x1p-40f && scaled > -0x1p-40f ? 0.0f : scaled;
   }
 
   // The power of two as a product: by itself it may be beyond the range of float.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstring>
 #include <limits>
 
@@ -19,7 +18,6 @@ using Integers = std::int32_t __attribute__((vector_size(4 * LANES)));
 constexpr std::size_t TILE = 256;
 static_assert(TILE % LANES == 0);
 
-constexpr float NEGLIGIBLE_AREA = 0x1p-100f;
 constexpr float INFINITE_AREA = std::numeric_limits<float>::infinity();
 
 constexpr std::size_t whole_lanes(std::size_t count) { return (count + LANES - 1) / LANES * LANES; }
@@ -45,11 +43,11 @@ struct Nearest {
 // ascending order, so a tie with an earlier gap changes nothing.
 void offer_neighbours(Nearest& best, std::size_t first, std::size_t gap, Floats left, Floats right) {
   const auto signed_gap = static_cast<std::int32_t>(gap);
-  const auto bit = static_cast<std::int32_t>(std::bit_floor(gap));
+  const auto bit = static_cast<std::int32_t>(gap & ~(gap - 1));
   const Integers index = static_cast<std::int32_t>(first) + Integers{0, 1, 2, 3};
-  // The pair on the left has min(i, j) = i - gap, the one on the right has i: on a tie the right one wins
-  // only where the bit is set in i - gap and not in i.
-  const Integers tie_goes_right = ((index - signed_gap) & ~index & bit) != 0;
+  // The pair on the left has min(i, j) = i - gap, the one on the right has i; they differ in the lowest bit
+  // of the gap, and on a tie the one without it wins.
+  const Integers tie_goes_right = (index & bit) == 0;
   const Integers takes_right = (right < left) | ((right == left) & tie_goes_right);
   const Floats areas = smaller(left, right);
   const Integers offsets = takes_right ? Integers{} + signed_gap : Integers{} - signed_gap;
@@ -99,7 +97,7 @@ void ClusterBoxes::write_union_areas(std::ptrdiff_t first, std::size_t count, st
     const Floats y = larger(load(&max_y_[i]), load(&max_y_[j])) - smaller(load(&min_y_[i]), load(&min_y_[j]));
     const Floats z = larger(load(&max_z_[i]), load(&max_z_[j])) - smaller(load(&min_z_[i]), load(&min_z_[j]));
     const Floats area = (x * y + y * z) + z * x;
-    store(areas + k, area < NEGLIGIBLE_AREA ? Floats{} : area);
+    store(areas + k, area);
   }
 }
 

@@ -39,10 +39,10 @@ class ClusterBoxes {
   void shrink(std::size_t count);
 
   // For each cluster i its nearest neighbour, nearest[i] = j != i with |i - j| <= radius. The distance is the
-  // half area of the union, areas below 2^-100 counting as 0; of equal distances the least (gap, bit, min(i,
-  // j)) wins, with gap = |i - j| and bit = bit floor(log2(gap)) of min(i, j). All of this belongs to the pair
-  // and orders all pairs, so the least pair of all is mutual, and of coincident boxes all but a last odd one
-  // pair up. At least two clusters; `nearest` has room for all.
+  // half area of the union; of equal distances the least (gap, bit) wins, with gap = |i - j| and bit = the
+  // lowest set bit of gap in min(i, j). All of this belongs to the pair and orders the pairs of any cluster
+  // strictly, so the least pair of all is mutual, and of coincident boxes all but a last odd one pair up. At
+  // least two clusters; `nearest` has room for all.
   void find_nearest(std::span<std::uint32_t> nearest) const;
 
  private:

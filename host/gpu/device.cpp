@@ -76,7 +76,8 @@ void for_each_feature(FeatureChain& chain, Visit visit) {
 
 std::string why_unsuitable(const vk::raii::PhysicalDevice& physical) {
   const auto properties =
-      physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties>();
+      physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties,
+                              vk::PhysicalDeviceVulkan12Properties>();
   const auto& core = properties.get<vk::PhysicalDeviceProperties2>().properties;
   if (core.apiVersion < VK_API_VERSION_1_3) return "no Vulkan 1.3";
   const auto& subgroups = properties.get<vk::PhysicalDeviceVulkan11Properties>();
@@ -84,6 +85,9 @@ std::string why_unsuitable(const vk::raii::PhysicalDevice& physical) {
                       vk::SubgroupFeatureFlagBits::eArithmetic | vk::SubgroupFeatureFlagBits::eBallot;
   if ((subgroups.subgroupSupportedOperations & needed) != needed) return "no subgroup arithmetic";
   if (subgroups.subgroupSize > 64) return "subgroups of more than 64 invocations";
+  const auto& floats = properties.get<vk::PhysicalDeviceVulkan12Properties>();
+  if (!floats.shaderRoundingModeRTEFloat32) return "no rounding to nearest even";
+  if (!floats.shaderSignedZeroInfNanPreserveFloat32) return "no infinities and NaN";
   if (core.limits.maxComputeWorkGroupInvocations < 512) return "no workgroups of 512 invocations";
   if (core.limits.maxComputeSharedMemorySize < 32768) return "less than 32 KiB of shared memory";
   auto features = physical.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features,
@@ -122,7 +126,8 @@ std::uint32_t choose_device(const std::vector<DeviceListing>& devices, const std
   throw DeviceError("--device: no device '" + select + "' (see 'coppice devices')");
 }
 
-// Mesa's lavapipe before 23.0 ends loops silently; see docs/numerics.md, "Loop turns".
+// Mesa's lavapipe 22.3 ends long loops silently, 25.0 does not; those between are taken to. docs/numerics.md,
+// "Loop turns".
 std::uint32_t known_loop_limit(const vk::PhysicalDeviceDriverProperties& driver) {
   if (driver.driverID != vk::DriverId::eMesaLlvmpipe) return 0;
   int major = 0;

@@ -23,6 +23,6 @@ vec3 cross_product(const vec3& a, const vec3& b);
 vec3 unit_vector(const vec3& v);
 
 // How far a padded slab interval reaches beyond the computed one, as a factor.
-inline constexpr float slab_pad = 1.0000004f;
+inline constexpr float slab_pad = 1.0f + 0x1p-20f;
 
 }  // namespace coppice::twins

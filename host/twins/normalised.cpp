@@ -30,7 +30,7 @@ Normalisation::Normalisation(const BuildState& state) : scene_box_{vec3(0), vec3
 vec3 Normalisation::operator()(vec3 position) const {
   for (int axis = 0; axis < 3; ++axis) {
     const double scaled = std::ldexp(static_cast<double>(position[axis]), exponent_);
-    position[axis] = std::fabs(scaled) < std::ldexp(1.0, -60) ? 0.0f : static_cast<float>(scaled);
+    position[axis] = std::fabs(scaled) < std::ldexp(1.0, -40) ? 0.0f : static_cast<float>(scaled);
   }
   return position;
 }
@@ -40,8 +40,7 @@ float union_area(const Aabb& a, const Aabb& b) {
   for (int axis = 0; axis < 3; ++axis) {
     extent[axis] = std::max(a.box_max[axis], b.box_max[axis]) - std::min(a.box_min[axis], b.box_min[axis]);
   }
-  const float area = extent[0] * extent[1] + extent[1] * extent[2] + extent[2] * extent[0];
-  return area < std::ldexp(1.0f, -100) ? 0.0f : area;
+  return extent[0] * extent[1] + extent[1] * extent[2] + extent[2] * extent[0];
 }
 
 }  // namespace coppice::twins

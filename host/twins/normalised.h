@@ -20,8 +20,7 @@ class Normalisation {
   int exponent_;
 };
 
-// Half the area of the union of two normalised boxes; areas too small to be the same on every device are
-// zero.
+// Half the area of the union of two normalised boxes.
 float union_area(const Aabb& a, const Aabb& b);
 
 }  // namespace coppice::twins

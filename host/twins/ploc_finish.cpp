@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <vector>
 
 #include "interface/ploc.h"
@@ -52,7 +53,7 @@ void ploc_finish(const PlocFinishArgs& args) {
     args.rounds[index + 1] = round_after(index, round, merged);
   }
   state.round_count = index;
-  if (clusters.size() > 1) state.error_word |= ERROR_PLOC_ROUNDS;
+  if (clusters.size() != std::min(state.active_count, 1u)) state.error_word |= ERROR_PLOC_ROUNDS;
   if (clusters.size() == 1) args.nodes[0] = clusters[0];
 }
 

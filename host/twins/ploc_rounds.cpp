@@ -42,8 +42,8 @@ Node make_parent(const Node& left, const Node& right, uint first_child) {
 uint children_place(uint active_count, uint rank) { return 2 * (active_count - 1 - rank) - 1; }
 
 uint nearest_neighbour(const Aabb* normalised_boxes, uint i, uint cluster_count, uint radius) {
-  // Smaller is nearer: area, gap, whether the pair's lower index has bit floor(log2 gap) set, lower index.
-  using Rank = std::tuple<float, uint, bool, uint>;
+  // Smaller is nearer: area, gap, whether the pair's lower index has the lowest bit of the gap set.
+  using Rank = std::tuple<float, uint, bool>;
   const uint first = i - std::min(i, radius);
   const uint last = std::min(i + radius, cluster_count - 1);
   Rank best_rank;
@@ -51,8 +51,8 @@ uint nearest_neighbour(const Aabb* normalised_boxes, uint i, uint cluster_count,
   for (uint j = first; j <= last; ++j) {
     if (j == i) continue;
     const uint lower = std::min(i, j), gap = std::max(i, j) - lower;
-    const bool odd = (lower & std::bit_floor(gap)) != 0;
-    const Rank rank(union_area(normalised_boxes[i], normalised_boxes[j]), gap, odd, lower);
+    const bool odd = (lower >> std::countr_zero(gap) & 1) != 0;
+    const Rank rank(union_area(normalised_boxes[i], normalised_boxes[j]), gap, odd);
     if (best == i || rank < best_rank) {
       best_rank = rank;
       best = j;

@@ -17,11 +17,12 @@ const uint PLOC_LEAVES_PER_INVOCATION = 16;
 const uint PLOC_LEAVES_TILE = PLOC_LEAVES_GROUP * PLOC_LEAVES_PER_INVOCATION;
 
 const uint PLOC_NEAREST_GROUP = 128;
-const uint PLOC_NEAREST_TILE = 512;
+const uint PLOC_NEAREST_RUN = 8;  // consecutive clusters that one invocation searches for
+const uint PLOC_NEAREST_TILE = PLOC_NEAREST_GROUP * PLOC_NEAREST_RUN;
 
 const uint PLOC_MERGE_GROUP = 64;
-const uint PLOC_MERGE_PER_INVOCATION = 16;
-const uint PLOC_MERGE_TILE = PLOC_MERGE_GROUP * PLOC_MERGE_PER_INVOCATION;
+const uint PLOC_MERGE_STEPS = 16;  // clusters of one invocation, less than 32
+const uint PLOC_MERGE_TILE = PLOC_MERGE_GROUP * PLOC_MERGE_STEPS;
 const uint PLOC_MERGE_SUMS = 2;  // scanned together: clusters that retire, pairs that merge
 const uint PLOC_TILE_SCAN_GROUP = 64;
 

@@ -19,10 +19,9 @@ struct Ray {
   float t_max;
 };
 
-// Closest hit; of equally close triangles the one with the smallest index, so that the order of traversal,
-// and with it the tree, never decides.
+// Closest hit; of equally close triangles the one with the smallest index, whatever the order of traversal.
 struct Hit {
-  float t;        // infinity for a miss
+  float t;        // t_max of the ray for a miss
   uint triangle;  // NO_TRIANGLE for a miss
   float u, v;     // barycentric coordinates of corners b and c
 };

@@ -42,6 +42,12 @@ struct Address {
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_vote : require
 
+#extension GL_EXT_spirv_intrinsics : require
+
+// RoundingModeRTE and SignedZeroInfNanPreserve for 32 bits: Vulkan promises neither without being asked.
+spirv_execution_mode(extensions = ["SPV_KHR_float_controls"], capabilities = [4467], 4462, 32);
+spirv_execution_mode(extensions = ["SPV_KHR_float_controls"], capabilities = [4466], 4461, 32);
+
 #define INTERFACE_BEGIN
 #define INTERFACE_END
 #define INTERFACE_BUFFER(Name, Type, Alignment) \

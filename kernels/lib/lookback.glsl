@@ -1,6 +1,6 @@
 // Decoupled lookback over tiles that carry LOOKBACK_SUMS sums each: Merrill and Garland 2016, "Single-pass Parallel
 // Prefix Scan with Decoupled Look-back". Vulkan promises no progress between workgroups, so a tile polls its
-// predecessor a bounded number of times and then sums it up itself (decoupled fallback: Levien et al.).
+// predecessor a bounded number of times and then sums it up itself (Smith, Levien and Owens 2025, "Decoupled Fallback").
 //
 // The including kernel defines LOOKBACK_GROUP, LOOKBACK_SUMS and `void sum_tile(uint tile)`, by which the whole
 // workgroup writes the sums of any tile to `tile_sums`.

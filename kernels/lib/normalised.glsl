@@ -1,9 +1,10 @@
 // Normalised coordinates: world units times a power of two that brings the scene's largest coordinate to [2^59, 2^60),
-// so that no area overflows and none that matters is denormal. See docs/numerics.md, "Normalised coordinates".
+// so that no area overflows and none is denormal. See docs/numerics.md, "Normalised coordinates".
 #include "lib/ordered_float.glsl"
 
-const float NORMALISED_FLOOR = 8.673617379884035e-19;  // 2^-60: smaller coordinates count as zero
-const float AREA_FLOOR = 7.888609052210118e-31;        // 2^-100: smaller areas count as zero
+// 2^-40: smaller coordinates count as zero. All others are multiples of 2^-63, and so are their differences: a product
+// of two is zero or at least 2^-126, and no denormal ever comes up.
+const float NORMALISED_FLOOR = 9.094947017729282e-13;
 
 struct Normalisation {
   float factor_a, factor_b;  // two factors: their product may lie outside the range of a float
