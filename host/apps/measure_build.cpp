@@ -51,11 +51,15 @@ BuildReport measure_gpu_build(CheckedDevice& device, GpuExecutor& executor, cons
   Progress progress("building", options.runs + 2);
   recorder.submit_and_wait(limit_seconds);  // compiles the kernels
   progress.step();
+  report.tree_hash = tree_hash(read_tree(executor, plan));
   std::vector<double> build_ms, wall_ms;
   for (std::uint32_t run = 0; run < options.runs; ++run) {
     const Recorder::Times times = recorder.submit_and_wait(limit_seconds);
     build_ms.push_back(times.total_ms);
     wall_ms.push_back(times.wall_ms);
+    if (tree_hash(read_tree(executor, plan)) != report.tree_hash) {
+      throw DeviceError("run " + std::to_string(run + 1) + " built another tree than the warm-up");
+    }
     progress.step();
   }
   const KernelSplit split = split_time(executor, chain.steps(), limit_seconds);

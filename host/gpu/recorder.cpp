@@ -9,13 +9,19 @@ namespace coppice {
 
 namespace {
 
-// Local size of a kernel, from its OpExecutionMode; x is all the kernels here use.
+// Local size in x, from the kernel's execution mode: literal, or the id of a constant (LocalSizeId,
+// SPIR-V 1.6).
 std::uint32_t local_size_x(std::span<const std::uint32_t> spirv) {
-  constexpr std::uint32_t op_execution_mode = 16, mode_local_size = 17;
+  constexpr std::uint32_t op_execution_mode = 16, op_execution_mode_id = 331, op_constant = 43;
+  constexpr std::uint32_t mode_local_size = 17, mode_local_size_id = 38;
+  std::uint32_t constant_id = 0;
   for (std::size_t i = 5; i < spirv.size(); i += spirv[i] >> 16) {
-    if ((spirv[i] & 0xffff) == op_execution_mode && spirv[i + 2] == mode_local_size) return spirv[i + 3];
+    const std::uint32_t op = spirv[i] & 0xffff;
+    if (op == op_execution_mode && spirv[i + 2] == mode_local_size) return spirv[i + 3];
+    if (op == op_execution_mode_id && spirv[i + 2] == mode_local_size_id) constant_id = spirv[i + 3];
+    if (op == op_constant && constant_id != 0 && spirv[i + 2] == constant_id) return spirv[i + 3];
   }
-  return 0;
+  throw std::logic_error("kernel without a local size");
 }
 
 vk::raii::Pipeline make_pipeline(const VulkanContext& context, const Kernel& kernel) {
