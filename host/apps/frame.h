@@ -28,10 +28,10 @@ Film make_film(const Scene& scene, std::span<const float> camera, std::uint32_t 
 
 // Uploads all that a build and a trace read, through any executor.
 template <class Executor>
-void upload_frame(Executor& executor, const BuildPlan& build, const TracePlan& trace,
+void upload_frame(Executor& executor, const TreeSlots& tree, const TracePlan& trace,
                   const SceneArrays& scene, const Film& film) {
   const auto thresholds = srgb_thresholds();
-  executor.upload(build.triangles, std::span<const Triangle>(scene.triangles));
+  executor.upload(tree.triangles, std::span<const Triangle>(scene.triangles));
   executor.upload(trace.material_index, std::span<const uint>(scene.material_index));
   executor.upload(trace.materials, std::span<const SurfaceMaterial>(scene.materials));
   executor.upload(trace.lighting, std::span<const Lighting>(&scene.lighting, 1));

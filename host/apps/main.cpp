@@ -7,6 +7,7 @@
 #include <new>
 
 #include "apps/options.h"
+#include "builders/registry.h"
 #include "interface/ploc.h"
 
 namespace {
@@ -59,8 +60,11 @@ void add_scene(CLI::App& command, Options& options) {
 }
 
 void add_builder(CLI::App& command, Options& options) {
+  std::vector<std::string> builders;
+  for (const coppice::CpuBuilder& builder : coppice::cpu_builders()) builders.emplace_back(builder.name);
+  builders.emplace_back("gpu-ploc");
   command.add_option("--builder", options.builder)
-      ->check(CLI::IsMember({"none", "ploc", "gpu-ploc"}))
+      ->check(CLI::IsMember(builders))
       ->capture_default_str();
 }
 
@@ -100,6 +104,9 @@ int run(int argc, char** argv) {
   CLI::App* const render = app.add_subcommand("render", "build, trace, write the picture");
   render->add_option("-o,--output", options.output)->capture_default_str();
   render->add_option("--tracer", options.tracer)->check(CLI::IsMember({"gpu", "cpu"}))->capture_default_str();
+  render->add_option("--runs", options.frames, "build and trace so many times; times are medians")
+      ->check(CLI::Range(1u, 10000u))
+      ->capture_default_str();
   add_picture(*render, options);
   CLI::App* const build =
       app.add_subcommand("build", "build only: time of every kernel, quality of the tree");

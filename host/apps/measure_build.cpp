@@ -5,19 +5,19 @@
 
 #include "analysis/tree_hash.h"
 #include "apps/progress.h"
-#include "builders/ploc.h"
+#include "builders/registry.h"
 #include "stages/errors.h"
 
 namespace coppice {
 
-void check_state(const GpuExecutor& executor, const BuildPlan& plan) {
-  const std::string error = describe_error_word(executor.read(plan.state)[0].error_word);
+void check_state(const GpuExecutor& executor, const TreeSlots& tree) {
+  const std::string error = describe_error_word(executor.read(tree.state)[0].error_word);
   if (!error.empty()) throw DeviceError(error);
 }
 
-std::vector<Node> read_tree(const GpuExecutor& executor, const BuildPlan& plan) {
-  const std::uint64_t active = executor.read(plan.state)[0].active_count;
-  return executor.read(Slot<Node>{plan.nodes.place, active == 0 ? 0 : 2 * active - 1});
+std::vector<Node> read_tree(const GpuExecutor& executor, const TreeSlots& tree) {
+  const std::uint64_t active = executor.read(tree.state)[0].active_count;
+  return executor.read(Slot<Node>{tree.nodes.place, active == 0 ? 0 : 2 * active - 1});
 }
 
 BuildReport report_for(const Options& options, const Scene& scene) {
@@ -79,23 +79,22 @@ BuildReport measure_gpu_build(CheckedDevice& device, GpuExecutor& executor, cons
   return report;
 }
 
-BuildReport measure_cpu_build(std::span<const Triangle> triangles, BuildReport report, const Options& options,
-                              Bvh& bvh) {
+BuildReport measure_cpu_build(std::span<const Triangle> triangles, BuildReport report, std::uint32_t runs, Bvh& bvh) {
+  const CpuBuilder& builder = find_cpu_builder(report.builder);
   report.device = "host CPU, " + std::to_string(std::max(1u, std::thread::hardware_concurrency())) + " cores";
   std::vector<double> build_ms;
-  Progress progress("building", options.runs);
-  for (std::uint32_t run = 0; run < options.runs; ++run) {
+  Progress progress("building", runs);
+  for (std::uint32_t run = 0; run < runs; ++run) {
     const auto start = std::chrono::steady_clock::now();
-    if (options.builder == "ploc") bvh = build_ploc(triangles, {options.radius, options.morton_bits});
+    bvh = builder.build(triangles, {report.radius, report.morton_bits});
     build_ms.push_back(
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     progress.step();
   }
   report.build_ms = report.wall_ms = spread_of(build_ms);
-  report.runs = options.runs;
+  report.runs = runs;
   report.rounds = bvh.rounds;
-  report.rounds_bound =
-      options.builder == "ploc" ? ploc_rounds_bound(static_cast<std::uint32_t>(triangles.size()), 1) : 0;
+  if (bvh.rounds > 0) report.rounds_bound = ploc_rounds_bound(static_cast<std::uint32_t>(triangles.size()), 1);
   describe_tree(report, bvh.nodes);
   return report;
 }

@@ -8,10 +8,10 @@
 namespace coppice {
 
 // Fails with DeviceError if the last submit left an error word.
-void check_state(const GpuExecutor& executor, const BuildPlan& plan);
+void check_state(const GpuExecutor& executor, const TreeSlots& tree);
 
 // The tree of the last submit, as long as it came out.
-std::vector<Node> read_tree(const GpuExecutor& executor, const BuildPlan& plan);
+std::vector<Node> read_tree(const GpuExecutor& executor, const TreeSlots& tree);
 
 // What is known of the scene before any build.
 BuildReport report_for(const Options& options, const Scene& scene);
@@ -30,8 +30,7 @@ KernelSplit split_time(GpuExecutor& executor, std::span<const Step> steps, doubl
 BuildReport measure_gpu_build(CheckedDevice& device, GpuExecutor& executor, const BuildPlan& plan,
                               BuildReport report, const Options& options);
 
-// The same by a CPU builder; `bvh` is the tree of the last run.
-BuildReport measure_cpu_build(std::span<const Triangle> triangles, BuildReport report, const Options& options,
-                              Bvh& bvh);
+// The same by a CPU builder, without a warm-up; `bvh` is the tree of the last run.
+BuildReport measure_cpu_build(std::span<const Triangle> triangles, BuildReport report, std::uint32_t runs, Bvh& bvh);
 
 }  // namespace coppice

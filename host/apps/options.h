@@ -17,7 +17,8 @@ struct Options {
   std::string builder = "gpu-ploc";
   std::uint32_t radius = 16;
   std::uint32_t morton_bits = 30;
-  std::uint32_t runs = 5;
+  std::uint32_t runs = 5;    // of `build`
+  std::uint32_t frames = 1;  // of `render`: the whole frame so many times
   std::string lookback = "auto";  // auto, on, off
 
   std::string output = "coppice.png";

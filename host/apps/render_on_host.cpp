@@ -27,30 +27,30 @@ Bvh build_on_device(CheckedDevice& device, const SceneArrays& arrays, BuildRepor
 RenderReport render_on_host(CheckedDevice* device, const Scene& scene, const Options& options) {
   const SceneArrays arrays = scene_arrays(scene);
   Options once = options;
-  once.runs = 1;
+  once.runs = options.frames;
   RenderReport report;
   report.build = report_for(options, scene);
   Bvh bvh;
   if (options.builder == "gpu-ploc") {
     bvh = build_on_device(*device, arrays, report.build, once);
   } else {
-    report.build = measure_cpu_build(arrays.triangles, report.build, once, bvh);
+    report.build = measure_cpu_build(arrays.triangles, report.build, options.frames, bvh);
   }
 
   Layout layout(~std::uint64_t{0});
-  const BuildPlan build = plan_build(layout, static_cast<std::uint32_t>(arrays.triangles.size()), {});
+  const TreeSlots tree = plan_tree(layout, static_cast<std::uint32_t>(arrays.triangles.size()), 0);
   TraceOptions trace_options;
   trace_options.width = options.width;
   trace_options.height = options.height;
   trace_options.samples = options.samples;
   const TracePlan trace =
-      plan_trace(layout, build, static_cast<std::uint32_t>(arrays.materials.size()), trace_options);
+      plan_trace(layout, tree, static_cast<std::uint32_t>(arrays.materials.size()), trace_options);
   CpuExecutor executor(layout);
-  upload_frame(executor, build, trace, arrays,
+  upload_frame(executor, tree, trace, arrays,
                make_film(scene, options.camera, options.width, options.height, options.samples));
 
   Chain chain = executor.chain();
-  append_trace(chain, build, trace);
+  append_trace(chain, tree, trace);
   const auto start = std::chrono::steady_clock::now();
   for (const Step& step : chain.steps()) {
     if (step.stage != &stages::trace_closest) {

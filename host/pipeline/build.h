@@ -17,18 +17,21 @@ struct BuildOptions {
   std::uint32_t lookback_turns = 16;
 };
 
+// A scene's triangles and the tree over them, whoever builds it.
+struct TreeSlots {
+  std::uint32_t triangle_count = 0;
+  Slot<Triangle> triangles;
+  Slot<Node> nodes;        // root at 0; of a build on the device the first 2 active - 1
+  Slot<BuildState> state;  // active_count is 0 without a tree
+};
+
 // Where a build keeps what. A pure function of the number of triangles and the options.
-struct BuildPlan {
-  std::uint32_t triangle_count;
+struct BuildPlan : TreeSlots {
   BuildOptions options;
-  std::uint32_t rounds_bound;     // rounds that are enough for any scene of this size
-  std::uint32_t recorded_rounds;  // of them, those that may come before the finish
+  std::uint32_t rounds_bound = 0;     // rounds that are enough for any scene of this size
+  std::uint32_t recorded_rounds = 0;  // of them, those that may come before the finish
 
-  Slot<Triangle> triangles;  // in
-  Slot<Node> nodes;          // out: 2 active - 1, root at 0
-  Slot<BuildState> state;    // out
-  Slot<PlocRound> rounds;    // out: one an entered round, the last with one cluster
-
+  Slot<PlocRound> rounds;  // out: one an entered round, the last with one cluster
   Slot<Aabb> boxes;
   Slot<uint> keys[2], values[2];
   Slot<uint> histogram, sort_status, sort_tickets;
@@ -41,6 +44,9 @@ inline constexpr std::uint32_t max_triangles = 65535u * PLOC_NEAREST_TILE;
 
 // Rounds of PLOC that reduce `clusters` clusters to at most `target`, at worst; proved in docs/numerics.md.
 std::uint32_t ploc_rounds_bound(std::uint32_t clusters, std::uint32_t target);
+
+// For a tree of `node_count` nodes that the host uploads. Throws LayoutError if a slot does not fit a block.
+TreeSlots plan_tree(Layout& layout, std::uint32_t triangle_count, std::uint64_t node_count);
 
 // Throws LayoutError if a slot does not fit a block, std::invalid_argument for options out of range or
 // more than max_triangles.

@@ -20,6 +20,11 @@ std::uint32_t ploc_rounds_bound(std::uint32_t clusters, std::uint32_t target) {
   return PLOC_EPOCH_ROUNDS * epoch + 2;
 }
 
+TreeSlots plan_tree(Layout& layout, std::uint32_t triangle_count, std::uint64_t node_count) {
+  return {triangle_count, layout.add<Triangle>("triangles", triangle_count), layout.add<Node>("nodes", node_count),
+          layout.add<BuildState>("state", 1)};
+}
+
 BuildPlan plan_build(Layout& layout, std::uint32_t triangle_count, const BuildOptions& options) {
   if (options.radius < 1 || options.radius > PLOC_MAX_RADIUS) {
     throw std::invalid_argument("radius " + std::to_string(options.radius) + " is not in 1 to " +
@@ -37,14 +42,11 @@ BuildPlan plan_build(Layout& layout, std::uint32_t triangle_count, const BuildOp
   const std::uint32_t n = triangle_count;
   const std::uint32_t key_words = options.morton_bits / 30;
   const std::uint32_t passes = key_words * SORT_PASSES_PER_WORD;
-  plan.triangle_count = n;
   plan.options = options;
   plan.rounds_bound = ploc_rounds_bound(n, 1);
   plan.recorded_rounds = ploc_rounds_bound(n, PLOC_FINISH_CLUSTERS);
 
-  plan.triangles = layout.add<Triangle>("triangles", n);
-  plan.nodes = layout.add<Node>("nodes", n == 0 ? 0 : 2 * std::uint64_t{n} - 1);
-  plan.state = layout.add<BuildState>("state", 1);
+  static_cast<TreeSlots&>(plan) = plan_tree(layout, n, n == 0 ? 0 : 2 * std::uint64_t{n} - 1);
   plan.rounds = layout.add<PlocRound>("rounds", plan.rounds_bound + 1);
   plan.boxes = layout.add<Aabb>("boxes", n);
   for (int i = 0; i < 2; ++i) {

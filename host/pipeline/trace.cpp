@@ -15,28 +15,28 @@ constexpr std::uint32_t max_band_pixels = 1u << 20;
 
 uvec3 groups_of(std::uint32_t count, std::uint32_t group) { return {(count + group - 1) / group, 1, 1}; }
 
-void append_closest_hits(Chain& chain, const BuildPlan& build, const TracePlan& plan,
+void append_closest_hits(Chain& chain, const TreeSlots& tree, const TracePlan& plan,
                          std::uint32_t ray_count) {
   const uvec3 groups = groups_of(ray_count, TRACE_GROUP);
-  const auto triangles = chain.at(build.triangles);
+  const auto triangles = chain.at(tree.triangles);
   const auto rays = chain.at(plan.rays);
   const auto hits = chain.at(plan.hits);
   const auto counters = chain.at(plan.counters);
   if (!plan.options.brute_force) {
     chain.run(stages::trace_closest,
-              {chain.at(build.nodes), triangles, rays, hits, counters, chain.at(build.state), ray_count,
+              {chain.at(tree.nodes), triangles, rays, hits, counters, chain.at(tree.state), ray_count,
                plan.options.stack_entries},
               groups, {plan.options.max_turns, plan.options.visits_per_turn, plan.options.stack_entries});
     return;
   }
   std::uint32_t first = 0;
   do {
-    const std::uint32_t count = std::min(BRUTE_FORCE_SLICE, build.triangle_count - first);
-    const bool last = first + count == build.triangle_count;
+    const std::uint32_t count = std::min(BRUTE_FORCE_SLICE, tree.triangle_count - first);
+    const bool last = first + count == tree.triangle_count;
     chain.run(stages::trace_brute_force, {triangles, rays, hits, counters, ray_count, first, count, last},
               groups);
     first += count;
-  } while (first < build.triangle_count);
+  } while (first < tree.triangle_count);
 }
 
 }  // namespace
@@ -52,13 +52,13 @@ std::array<uint, 256> srgb_thresholds() {
   return thresholds;
 }
 
-TracePlan plan_trace(Layout& layout, const BuildPlan& build, std::uint32_t material_count,
+TracePlan plan_trace(Layout& layout, const TreeSlots& tree, std::uint32_t material_count,
                      const TraceOptions& options) {
   TracePlan plan;
   plan.options = options;
   const std::uint32_t pixels = options.width * options.height;
   plan.band_pixels = std::min(pixels, max_band_pixels);
-  plan.material_index = layout.add<uint>("material_index", build.triangle_count);
+  plan.material_index = layout.add<uint>("material_index", tree.triangle_count);
   plan.materials = layout.add<SurfaceMaterial>("materials", material_count);
   plan.film = layout.add<Film>("film", 1);
   plan.lighting = layout.add<Lighting>("lighting", 1);
@@ -71,7 +71,7 @@ TracePlan plan_trace(Layout& layout, const BuildPlan& build, std::uint32_t mater
   return plan;
 }
 
-void append_trace(Chain& chain, const BuildPlan& build, const TracePlan& plan) {
+void append_trace(Chain& chain, const TreeSlots& tree, const TracePlan& plan) {
   chain.clear(plan.counters);
   const auto rays = chain.at(plan.rays);
   const auto hits = chain.at(plan.hits);
@@ -82,9 +82,9 @@ void append_trace(Chain& chain, const BuildPlan& build, const TracePlan& plan) {
     for (std::uint32_t sample = 0; sample < plan.options.samples; ++sample) {
       chain.run(stages::camera_rays, {chain.at(plan.film), rays, hits, first, count, sample, 0},
                 groups_of(count, CAMERA_RAYS_GROUP));
-      append_closest_hits(chain, build, plan, count);
+      append_closest_hits(chain, tree, plan, count);
       chain.run(stages::shade,
-                {chain.at(build.triangles), chain.at(plan.material_index), chain.at(plan.materials),
+                {chain.at(tree.triangles), chain.at(plan.material_index), chain.at(plan.materials),
                  chain.at(plan.lighting), rays, hits, radiance, count, sample},
                 groups_of(count, SHADE_GROUP), {plan.options.directional_light});
     }

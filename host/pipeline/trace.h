@@ -21,7 +21,7 @@ struct TraceOptions {
   bool directional_light = true;  // what the scene calls for
 };
 
-// Where a trace keeps what, beside the build whose tree it walks.
+// Where a trace keeps what, beside the tree it walks.
 struct TracePlan {
   TraceOptions options;
   std::uint32_t band_pixels;  // the image is traced in bands of at most so many pixels
@@ -40,11 +40,11 @@ struct TracePlan {
 };
 
 // Throws LayoutError if a slot does not fit a block.
-TracePlan plan_trace(Layout& layout, const BuildPlan& build, std::uint32_t material_count,
+TracePlan plan_trace(Layout& layout, const TreeSlots& tree, std::uint32_t material_count,
                      const TraceOptions& options);
 
 // Tree to image: camera rays, closest hits, shading, sRGB.
-void append_trace(Chain& chain, const BuildPlan& build, const TracePlan& plan);
+void append_trace(Chain& chain, const TreeSlots& tree, const TracePlan& plan);
 
 // For each 8-bit sRGB code the bits of the least linear value that rounds to it (IEC 61966-2-1); minus
 // infinity for 0.
