@@ -31,6 +31,7 @@ Json to_json(const RenderReport& report, const Scene& scene, const Options& opti
           {"height", options.height},
           {"spp", options.samples},
           {"tracer", options.tracer},
+          {"trace_device", report.trace_device},
           {"trace_ms", report.trace_ms},
           {"rays",
            {{"primary", report.rays},

@@ -28,8 +28,8 @@ Film make_film(const Scene& scene, std::span<const float> camera, std::uint32_t 
 
 // Uploads all that a build and a trace read, through any executor.
 template <class Executor>
-void upload_frame(Executor& executor, const TreeSlots& tree, const TracePlan& trace,
-                  const SceneArrays& scene, const Film& film) {
+void upload_frame(Executor& executor, const TreeSlots& tree, const TracePlan& trace, const SceneArrays& scene,
+                  const Film& film) {
   const auto thresholds = srgb_thresholds();
   executor.upload(tree.triangles, std::span<const Triangle>(scene.triangles));
   executor.upload(trace.material_index, std::span<const uint>(scene.material_index));

@@ -59,12 +59,16 @@ void add_scene(CLI::App& command, Options& options) {
   command.add_option("SCENE", options.scene, "an .obj file or a built-in scene")->capture_default_str();
 }
 
-void add_builder(CLI::App& command, Options& options) {
+std::vector<std::string> builder_names() {
   std::vector<std::string> builders;
   for (const coppice::CpuBuilder& builder : coppice::cpu_builders()) builders.emplace_back(builder.name);
   builders.emplace_back("gpu-ploc");
+  return builders;
+}
+
+void add_builder(CLI::App& command, Options& options) {
   command.add_option("--builder", options.builder)
-      ->check(CLI::IsMember(builders))
+      ->check(CLI::IsMember(builder_names()))
       ->capture_default_str();
 }
 
@@ -104,9 +108,6 @@ int run(int argc, char** argv) {
   CLI::App* const render = app.add_subcommand("render", "build, trace, write the picture");
   render->add_option("-o,--output", options.output)->capture_default_str();
   render->add_option("--tracer", options.tracer)->check(CLI::IsMember({"gpu", "cpu"}))->capture_default_str();
-  render->add_option("--runs", options.frames, "build and trace so many times; times are medians")
-      ->check(CLI::Range(1u, 10000u))
-      ->capture_default_str();
   add_picture(*render, options);
   CLI::App* const build =
       app.add_subcommand("build", "build only: time of every kernel, quality of the tree");
@@ -116,6 +117,26 @@ int run(int argc, char** argv) {
   CLI::App* const lockstep =
       app.add_subcommand("lockstep", "every stage on device and CPU; the first difference, or none");
   add_picture(*lockstep, options);
+  CLI::App* const compare =
+      app.add_subcommand("compare", "every builder on these scenes: the report's Table I");
+  compare->add_option("SCENE", options.scenes, "default: four generated ones of 500 to 3,000,000 triangles");
+  compare->add_option("--builders", options.builders, "default: all")
+      ->delimiter(',')
+      ->check(CLI::IsMember(builder_names()));
+  compare->add_option("--size", options.size, "pixels, default 1024x768")->type_name("WxH");
+  compare->add_option("--timeout", options.timeout_seconds, "seconds a row may take")
+      ->check(CLI::Range(0.1, 86400.0))
+      ->capture_default_str();
+  compare->add_option("--markdown", options.markdown, "write the tables to FILE")->type_name("FILE");
+  compare->add_option("--plot", options.plot, "write build time against frame time as SVG")
+      ->type_name("FILE");
+  compare->add_option("--device", options.device, "part of a device's name, or its index")
+      ->type_name("NAME|INDEX");
+  add_ploc(*compare, options);
+  for (CLI::App* const command : {render, compare})
+    command->add_option("--runs", options.frames, "build and trace so many times; times are medians")
+        ->check(CLI::Range(1u, 10000u))
+        ->capture_default_str();
   for (CLI::App* const command : {render, build}) add_builder(*command, options);
   for (CLI::App* const command : {render, build, lockstep}) {
     add_scene(*command, options);
@@ -124,7 +145,8 @@ int run(int argc, char** argv) {
   }
   CLI::App* const scenes = app.add_subcommand("scenes", "the built-in scenes");
   CLI::App* const devices = app.add_subcommand("devices", "the Vulkan devices");
-  for (CLI::App* const command : {render, build, lockstep, scenes, devices}) add_common(*command, options);
+  for (CLI::App* const command : {render, build, lockstep, compare, scenes, devices})
+    add_common(*command, options);
 
   try {
     app.parse(argc, argv);
@@ -141,6 +163,7 @@ int run(int argc, char** argv) {
   if (*render) return run_render(options);
   if (*build) return run_build(options);
   if (*lockstep) return run_lockstep(options);
+  if (*compare) return run_compare(options);
   if (*scenes) return run_scenes(options);
   return run_devices(options);
 }

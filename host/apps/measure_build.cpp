@@ -79,7 +79,8 @@ BuildReport measure_gpu_build(CheckedDevice& device, GpuExecutor& executor, cons
   return report;
 }
 
-BuildReport measure_cpu_build(std::span<const Triangle> triangles, BuildReport report, std::uint32_t runs, Bvh& bvh) {
+BuildReport measure_cpu_build(std::span<const Triangle> triangles, BuildReport report, std::uint32_t runs,
+                              Bvh& bvh) {
   const CpuBuilder& builder = find_cpu_builder(report.builder);
   report.device = "host CPU, " + std::to_string(std::max(1u, std::thread::hardware_concurrency())) + " cores";
   std::vector<double> build_ms;
@@ -94,7 +95,8 @@ BuildReport measure_cpu_build(std::span<const Triangle> triangles, BuildReport r
   report.build_ms = report.wall_ms = spread_of(build_ms);
   report.runs = runs;
   report.rounds = bvh.rounds;
-  if (bvh.rounds > 0) report.rounds_bound = ploc_rounds_bound(static_cast<std::uint32_t>(triangles.size()), 1);
+  if (bvh.rounds > 0)
+    report.rounds_bound = ploc_rounds_bound(static_cast<std::uint32_t>(triangles.size()), 1);
   describe_tree(report, bvh.nodes);
   return report;
 }

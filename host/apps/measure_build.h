@@ -31,6 +31,7 @@ BuildReport measure_gpu_build(CheckedDevice& device, GpuExecutor& executor, cons
                               BuildReport report, const Options& options);
 
 // The same by a CPU builder, without a warm-up; `bvh` is the tree of the last run.
-BuildReport measure_cpu_build(std::span<const Triangle> triangles, BuildReport report, std::uint32_t runs, Bvh& bvh);
+BuildReport measure_cpu_build(std::span<const Triangle> triangles, BuildReport report, std::uint32_t runs,
+                              Bvh& bvh);
 
 }  // namespace coppice

@@ -17,9 +17,13 @@ struct Options {
   std::string builder = "gpu-ploc";
   std::uint32_t radius = 16;
   std::uint32_t morton_bits = 30;
-  std::uint32_t runs = 5;    // of `build`
-  std::uint32_t frames = 1;  // of `render`: the whole frame so many times
+  std::uint32_t runs = 5;         // of `build`
+  std::uint32_t frames = 1;       // of `render`: the whole frame so many times
   std::string lookback = "auto";  // auto, on, off
+
+  std::vector<std::string> scenes, builders;  // of `compare`; empty: the default ones, all
+  double timeout_seconds = 60;
+  std::string markdown, plot;  // files; empty: none
 
   std::string output = "coppice.png";
   std::string size;  // WxH as given; `width` and `height` hold it parsed
@@ -34,6 +38,7 @@ struct Options {
 int run_render(const Options& options);
 int run_build(const Options& options);
 int run_lockstep(const Options& options);
+int run_compare(const Options& options);
 int run_scenes(const Options& options);
 int run_devices(const Options& options);
 

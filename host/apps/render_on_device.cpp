@@ -96,6 +96,7 @@ RenderReport render_on_device(CheckedDevice& device, const Scene& scene, const O
   const auto triangle_count = static_cast<std::uint32_t>(arrays.triangles.size());
   const bool builds = options.builder == "gpu-ploc";
   RenderReport report;
+  report.trace_device = device.device.properties().name + ", " + device.device.properties().driver;
   report.build = report_for(options, scene);
   Bvh bvh;
   if (!builds) report.build = measure_cpu_build(arrays.triangles, report.build, options.frames, bvh);

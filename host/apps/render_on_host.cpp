@@ -29,6 +29,7 @@ RenderReport render_on_host(CheckedDevice* device, const Scene& scene, const Opt
   Options once = options;
   once.runs = options.frames;
   RenderReport report;
+  report.trace_device = "host CPU";
   report.build = report_for(options, scene);
   Bvh bvh;
   if (options.builder == "gpu-ploc") {

@@ -15,14 +15,14 @@ namespace {
 
 const char* step_name(const Step& step) { return step.stage ? step.stage->name : "clear"; }
 
+}  // namespace
+
 void write_text(const std::string& path, const std::string& text) {
   std::ofstream file(path, std::ios::trunc);
   file << text << '\n';
   file.close();
   if (!file) throw InputError("cannot write '" + path + "': " + std::strerror(errno));
 }
-
-}  // namespace
 
 std::vector<Step> measurable_steps(const GpuExecutor& executor, std::span<const Step> steps) {
   std::vector<Step> kept;

@@ -1,0 +1,193 @@
+#include "apps/comparison.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <limits>
+
+namespace coppice {
+
+namespace {
+
+std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
+
+std::string format(const char* pattern, ...) {
+  char text[512];
+  va_list arguments;
+  va_start(arguments, pattern);
+  std::vsnprintf(text, sizeof text, pattern, arguments);
+  va_end(arguments);
+  return text;
+}
+
+// The least positive value over the feasible rows; 0 if there is none.
+double least(const std::vector<ComparisonRow>& rows, double ComparisonRow::*member) {
+  double least = 0;
+  for (const ComparisonRow& row : rows) {
+    const double value = row.*member;
+    if (row.infeasible.empty() && value > 0 && (least == 0 || value < least)) least = value;
+  }
+  return least;
+}
+
+std::string factor(double value, double best) {
+  return value > 0 && best > 0 ? format("%.2f", value / best) : "-";
+}
+
+constexpr double plot_width = 720, plot_height = 480, plot_margin = 60;
+
+struct Axis {
+  double low = std::numeric_limits<double>::infinity(), high = 0;
+
+  void include(double value) {
+    if (value <= 0) return;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  void round_to_decades() {
+    low = std::pow(10, std::floor(std::log10(low)));
+    high = std::pow(10, std::ceil(std::log10(high * 1.001)));
+  }
+  double position(double value) const { return std::log(value / low) / std::log(high / low); }
+};
+
+double plot_x(const Axis& axis, double value) {
+  return plot_margin + axis.position(value) * (plot_width - 2 * plot_margin);
+}
+double plot_y(const Axis& axis, double value) {
+  return plot_height - plot_margin - axis.position(value) * (plot_height - 2 * plot_margin);
+}
+
+std::string plot_grid(const Axis& build, const Axis& frame) {
+  std::string svg;
+  for (double value = build.low; value <= build.high * 1.001; value *= 10) {
+    const double x = plot_x(build, value);
+    svg += format(
+        "<path d='M%.1f %.1fV%.1f' stroke='#ddd'/><text x='%.1f' y='%.1f' text-anchor='middle'>%g</text>\n",
+        x, plot_margin, plot_height - plot_margin, x, plot_height - plot_margin + 16, value);
+  }
+  for (double value = frame.low; value <= frame.high * 1.001; value *= 10) {
+    const double y = plot_y(frame, value);
+    svg += format(
+        "<path d='M%.1f %.1fH%.1f' stroke='#ddd'/><text x='%.1f' y='%.1f' text-anchor='end'>%g</text>\n",
+        plot_margin, y, plot_width - plot_margin, plot_margin - 6, y + 4, value);
+  }
+  svg += format("<text x='%.1f' y='%.1f' text-anchor='middle'>build time, ms</text>\n", plot_width / 2,
+                plot_height - 18);
+  svg +=
+      format("<text transform='translate(18 %.1f) rotate(-90)' text-anchor='middle'>frame time, ms</text>\n",
+             plot_height / 2);
+  return svg;
+}
+
+}  // namespace
+
+ComparisonRow comparison_row(const std::string& builder, const Json& render) {
+  constexpr std::uint64_t bytes_a_node = 32;
+  const Json& build = render.at("build");
+  ComparisonRow row;
+  row.builder = builder;
+  // Without a tree there was nothing to build, and no build is the fastest.
+  row.build_ms = build.at("nodes") == 0 ? 0.0 : build.at("build_ms").get<double>();
+  row.frame_ms = render.at("trace_ms");
+  row.sah = build.at("sah");
+  row.mrays_per_s = render.at("mrays_per_s");
+  row.steps_per_ray = render.at("steps_per_ray");
+  row.depth = build.at("depth");
+  row.references = build.at("references");
+  row.node_bytes = build.at("nodes").get<std::uint64_t>() * bytes_a_node;
+  row.tree_hash = build.at("tree_hash");
+  return row;
+}
+
+std::string to_markdown(const std::vector<SceneComparison>& scenes, const std::string& conditions) {
+  std::string text = conditions + "\n";
+  for (const SceneComparison& scene : scenes) {
+    const double fastest = least(scene.rows, &ComparisonRow::build_ms);
+    const double best = least(scene.rows, &ComparisonRow::frame_ms);
+    text += format("\n### %s, %llu triangles\n\n", scene.scene.c_str(),
+                   static_cast<unsigned long long>(scene.triangles));
+    text +=
+        "| builder | build ms | x fastest | frame ms | FPS | x best | SAH cost | depth | references | nodes "
+        "MB | Mrays/s | steps/ray |\n";
+    text += "|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+    for (const ComparisonRow& row : scene.rows) {
+      if (!row.infeasible.empty()) {
+        text +=
+            format("| %s | X (%s) | | X | X | | | | | | | |\n", row.builder.c_str(), row.infeasible.c_str());
+        continue;
+      }
+      text +=
+          format("| %s | %.1f | %s | %.1f | %.2f | %s | %.2f | %llu | %llu | %.1f | %.2f | %.1f |\n",
+                 row.builder.c_str(), row.build_ms, factor(row.build_ms, fastest).c_str(), row.frame_ms,
+                 1000 / row.frame_ms, factor(row.frame_ms, best).c_str(), row.sah,
+                 static_cast<unsigned long long>(row.depth), static_cast<unsigned long long>(row.references),
+                 static_cast<double>(row.node_bytes) * 1e-6, row.mrays_per_s, row.steps_per_ray);
+    }
+  }
+  return text;
+}
+
+Json to_json(const std::vector<SceneComparison>& scenes) {
+  Json list = Json::array();
+  for (const SceneComparison& scene : scenes) {
+    Json rows = Json::array();
+    for (const ComparisonRow& row : scene.rows) {
+      if (!row.infeasible.empty()) {
+        rows.push_back({{"builder", row.builder}, {"infeasible", row.infeasible}});
+        continue;
+      }
+      rows.push_back({{"builder", row.builder},
+                      {"build_ms", row.build_ms},
+                      {"frame_ms", row.frame_ms},
+                      {"fps", 1000 / row.frame_ms},
+                      {"sah", row.sah},
+                      {"depth", row.depth},
+                      {"references", row.references},
+                      {"node_bytes", row.node_bytes},
+                      {"mrays_per_s", row.mrays_per_s},
+                      {"steps_per_ray", row.steps_per_ray},
+                      {"tree_hash", row.tree_hash}});
+    }
+    list.push_back({{"scene", scene.scene}, {"triangles", scene.triangles}, {"builders", rows}});
+  }
+  return list;
+}
+
+std::string to_svg(const std::vector<SceneComparison>& scenes) {
+  constexpr const char* colours[] = {"#3b6fb6", "#c0504d", "#5a9e4b", "#8064a2", "#d08a2e", "#3aa6a6"};
+  Axis build, frame;
+  for (const SceneComparison& scene : scenes) {
+    for (const ComparisonRow& row : scene.rows) {
+      if (row.infeasible.empty() && row.build_ms > 0)
+        build.include(row.build_ms), frame.include(row.frame_ms);
+    }
+  }
+  std::string svg = format(
+      "<svg xmlns='http://www.w3.org/2000/svg' width='%g' height='%g' font-family='sans-serif' "
+      "font-size='11'>\n"
+      "<rect width='100%%' height='100%%' fill='white'/>\n",
+      plot_width, plot_height);
+  if (build.high > 0) {
+    build.round_to_decades();
+    frame.round_to_decades();
+    svg += plot_grid(build, frame);
+  }
+  std::size_t index = 0;
+  for (const SceneComparison& scene : scenes) {
+    const char* const colour = colours[index % std::size(colours)];
+    svg += format("<text x='%g' y='%g' fill='%s'>%s</text>\n", plot_margin + 10,
+                  plot_margin - 34 + 13 * static_cast<double>(index), colour, scene.scene.c_str());
+    ++index;
+    for (const ComparisonRow& row : scene.rows) {
+      if (!row.infeasible.empty() || row.build_ms <= 0) continue;
+      const double x = plot_x(build, row.build_ms), y = plot_y(frame, row.frame_ms);
+      svg +=
+          format("<circle cx='%.1f' cy='%.1f' r='4' fill='%s'/><text x='%.1f' y='%.1f' fill='%s'>%s</text>\n",
+                 x, y, colour, x + 6, y + 4, colour, row.builder.c_str());
+    }
+  }
+  return svg + "</svg>\n";
+}
+
+}  // namespace coppice
