@@ -14,7 +14,7 @@ layout(push_constant, scalar) uniform Push { PlocFinishArgs args; };
 
 shared Node clusters[PLOC_FINISH_CLUSTERS];
 shared uint nearest[PLOC_FINISH_CLUSTERS];
-shared uint subgroup_sums[PLOC_FINISH_CLUSTERS];
+shared uint subgroup_sums[PLOC_FINISH_CLUSTERS / 4];  // no device has subgroups of fewer than 4
 
 uint first_finish_round() {
   uint round = 0u;

@@ -53,6 +53,12 @@ TEST_F(Lockstep, PowersOfTwoAndTheirNeighbours) {
   }
 }
 
+TEST_F(Lockstep, AMillionTriangles) {
+  BuildOptions options;
+  options.radius = 2;
+  expect_equal(random_triangles(1000000, 1), options, "a million triangles");
+}
+
 struct Variant {
   const char* name;
   BuildOptions options;

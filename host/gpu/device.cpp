@@ -84,6 +84,7 @@ std::string why_unsuitable(const vk::raii::PhysicalDevice& physical) {
   const auto needed = vk::SubgroupFeatureFlagBits::eBasic | vk::SubgroupFeatureFlagBits::eVote |
                       vk::SubgroupFeatureFlagBits::eArithmetic | vk::SubgroupFeatureFlagBits::eBallot;
   if ((subgroups.subgroupSupportedOperations & needed) != needed) return "no subgroup arithmetic";
+  if (subgroups.subgroupSize < 4) return "subgroups of fewer than 4 invocations";
   if (subgroups.subgroupSize > 64) return "subgroups of more than 64 invocations";
   const auto& floats = properties.get<vk::PhysicalDeviceVulkan12Properties>();
   if (!floats.shaderRoundingModeRTEFloat32) return "no rounding to nearest even";

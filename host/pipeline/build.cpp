@@ -1,5 +1,6 @@
 #include "pipeline/build.h"
 
+#include <algorithm>
 #include <cstddef>
 
 #include "stages/stages.h"
@@ -7,6 +8,10 @@
 namespace coppice {
 
 namespace {
+
+// max_triangles is what one dispatch of the smallest tile reaches.
+static_assert(std::min({PRIMITIVE_BOUNDS_TILE, MORTON_TILE, SORT_HISTOGRAM_TILE, SORT_TILE, PLOC_LEAVES_TILE,
+                        PLOC_MERGE_TILE}) >= PLOC_NEAREST_TILE);
 
 uvec3 tiles(std::uint32_t count, std::uint32_t tile, std::uint32_t rows = 1) {
   return {count / tile + (count % tile != 0), rows, 1};

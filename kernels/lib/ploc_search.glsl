@@ -5,15 +5,17 @@
 // it clear. Both clusters of a pair rank it alike, so the globally first pair is mutual and every round merges.
 #include "lib/normalised.glsl"
 
-shared vec3 tile_min[PLOC_TILE_BOXES];
-shared vec3 tile_max[PLOC_TILE_BOXES];
+// A box in 24 bytes, also where shared memory is laid out by std430, which would give a vec3 16.
+shared vec4 tile_min_and_max_x[PLOC_TILE_BOXES];
+shared vec2 tile_max_yz[PLOC_TILE_BOXES];
 
 const float NO_AREA = 3.402823466e38;      // above every normalised area
 const float FAR = 9.223372036854775808e18;  // 2^63: a box that reaches so far has an infinite area
 
 void cache_box(uint slot, Node cluster, Normalisation normalisation) {
-  tile_min[slot] = normalised(cluster.box_min, normalisation);
-  tile_max[slot] = normalised(cluster.box_max, normalisation);
+  vec3 box_max = normalised(cluster.box_max, normalisation);
+  tile_min_and_max_x[slot] = vec4(normalised(cluster.box_min, normalisation), box_max.x);
+  tile_max_yz[slot] = box_max.yz;
 }
 
 struct Box {
@@ -22,7 +24,9 @@ struct Box {
 
 // The box at `slot`, or one that is nearest to nothing.
 Box tile_box(uint slot, bool present) {
-  return present ? Box(tile_min[slot], tile_max[slot]) : Box(vec3(-FAR), vec3(FAR));
+  if (!present) return Box(vec3(-FAR), vec3(FAR));
+  vec4 low = tile_min_and_max_x[slot];
+  return Box(low.xyz, vec3(low.w, tile_max_yz[slot]));
 }
 
 // Selected rather than min and max: those cost CPU devices three instructions each, for the sake of NaN.
