@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <stdexcept>
 
@@ -43,7 +44,10 @@ bool read_all(int input, double limit_seconds, std::string& output) {
   for (;;) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now()).count();
     pollfd wanted{input, POLLIN, 0};
-    if (left <= 0 || poll(&wanted, 1, static_cast<int>(left)) <= 0) return false;
+    if (left <= 0) return false;
+    const int ready = poll(&wanted, 1, static_cast<int>(left));
+    if (ready < 0 && errno == EINTR) continue;
+    if (ready <= 0) return false;
     const ssize_t count = read(input, piece, sizeof piece);
     if (count <= 0) return true;
     output.append(piece, static_cast<std::size_t>(count));

@@ -101,6 +101,10 @@ int run_lockstep(const Options& options) {
   write_json(options.json, json);
   if (!error.empty()) throw DeviceError(error);
   const int validation = validation_status(device.device);
+  if (difference) {
+    std::fprintf(stderr, "coppice: stage %s differs at %s[%llu]\n", difference->stage.c_str(),
+                 difference->slot.c_str(), static_cast<unsigned long long>(difference->index));
+  }
   return difference ? 1 : validation;
 }
 

@@ -9,12 +9,13 @@
 #include "apps/options.h"
 #include "builders/registry.h"
 #include "interface/ploc.h"
+#include "scene/write_png.h"
 
 namespace {
 
 using coppice::Options;
 
-constexpr std::uint32_t max_side = 16384;
+constexpr std::uint32_t max_side = 16383;  // a square of it is the most that write_png takes
 
 // "1024x768" into width and height, each 1 to max_side.
 std::string parse_size(Options& options) {
@@ -159,6 +160,9 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     std::fprintf(stderr, "coppice: %s\n", error.what());
     return 2;
+  }
+  for (const std::string& file : {options.json, options.trace_events, options.markdown, options.plot}) {
+    if (!file.empty() && file != "-") coppice::check_writable(file);
   }
   if (*render) return run_render(options);
   if (*build) return run_build(options);

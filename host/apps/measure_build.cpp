@@ -95,6 +95,7 @@ BuildReport measure_cpu_build(std::span<const Triangle> triangles, BuildReport r
   report.build_ms = report.wall_ms = spread_of(build_ms);
   report.runs = runs;
   report.rounds = bvh.rounds;
+  report.reference_cap_reached = bvh.reference_cap_reached;
   if (bvh.rounds > 0)
     report.rounds_bound = ploc_rounds_bound(static_cast<std::uint32_t>(triangles.size()), 1);
   describe_tree(report, bvh.nodes);

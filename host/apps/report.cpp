@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 
@@ -18,10 +19,20 @@ const char* step_name(const Step& step) { return step.stage ? step.stage->name :
 }  // namespace
 
 void write_text(const std::string& path, const std::string& text) {
-  std::ofstream file(path, std::ios::trunc);
+  // Whole or not at all, where the target is a file and no device or pipe.
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const bool replaces = !fs::exists(path, error) || fs::is_regular_file(path, error);
+  const std::string written = replaces ? path + ".partial" : path;
+  std::ofstream file(written, std::ios::trunc);
   file << text << '\n';
   file.close();
-  if (!file) throw InputError("cannot write '" + path + "': " + std::strerror(errno));
+  const bool done = static_cast<bool>(file);
+  if (done && replaces) fs::rename(written, path, error);
+  if (done && !error) return;
+  const std::string reason = error ? error.message() : std::strerror(errno);
+  if (replaces) fs::remove(written, error);
+  throw InputError("cannot write '" + path + "': " + reason);
 }
 
 std::vector<Step> measurable_steps(const GpuExecutor& executor, std::span<const Step> steps) {
@@ -98,6 +109,7 @@ Json to_json(const BuildReport& report) {
   json["depth"] = report.quality.depth;
   json["sah"] = report.quality.sah;
   json["references"] = report.quality.references;
+  if (report.reference_cap_reached) json["reference_cap_reached"] = true;
   json["tree_hash"] = hex16(report.tree_hash);
   return json;
 }
@@ -111,15 +123,16 @@ void print_build(const BuildReport& report) {
   std::printf("  build %.3f ms (%.3f to %.3f in %u runs)", report.build_ms.median, report.build_ms.least,
               report.build_ms.greatest, report.runs);
   if (report.rounds_bound) std::printf(", %u rounds of at most %u", report.rounds, report.rounds_bound);
-  std::printf("\n  tree %s: %llu nodes, depth %u, SAH cost %.3f\n", hex16(report.tree_hash).c_str(),
-              static_cast<unsigned long long>(report.quality.nodes), report.quality.depth,
-              report.quality.sah);
+  std::printf("\n  tree %s: %llu nodes, depth %u, SAH cost %.3f%s\n", hex16(report.tree_hash).c_str(),
+              static_cast<unsigned long long>(report.quality.nodes), report.quality.depth, report.quality.sah,
+              report.reference_cap_reached ? ", cap on references reached" : "");
 }
 
 void write_json(const std::string& path, const Json& json) {
   if (path.empty()) return;
   if (path == "-") {
     std::cout << json.dump(2) << std::endl;
+    if (!std::cout) throw InputError("cannot write the report to stdout");
   } else {
     write_text(path, json.dump(2));
   }

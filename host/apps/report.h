@@ -46,6 +46,7 @@ struct BuildReport {
   TreeQuality quality{};
   std::uint64_t tree_hash = 0;
   std::uint64_t device_bytes = 0;
+  bool reference_cap_reached = false;  // spatial splits ran out of references
 };
 Json to_json(const BuildReport& report);
 void print_build(const BuildReport& report);

@@ -179,7 +179,9 @@ void make_device(VulkanContext& context) {
   const vk::PushConstantRange push(vk::ShaderStageFlagBits::eCompute, 0, 128);
   context.pipeline_layout =
       vk::raii::PipelineLayout(context.device, vk::PipelineLayoutCreateInfo({}, {}, push));
-  context.properties = describe(context, family->timestampValidBits);
+  const std::uint32_t bits = family->timestampValidBits;
+  context.timestamp_mask = bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
+  context.properties = describe(context, bits);
 }
 
 }  // namespace

@@ -167,11 +167,15 @@ Recorder::Times Recorder::submit_and_wait(double limit_seconds) {
   const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - start;
 
   Times times{wall.count(), wall.count(), {}, {}};
-  if (!*c.queries) return times;
+  if (!*c.queries) {
+    times.marks_ms.assign(c.mark_queries.size(), times.wall_ms);
+    return times;
+  }
   const auto [result, ticks] = c.queries.getResults<std::uint64_t>(0, c.query_count, c.query_count * 8, 8,
                                                                    vk::QueryResultFlagBits::e64);
   const auto since = [&](std::uint32_t from, std::uint32_t to) {
-    return static_cast<double>(ticks[to] - ticks[from]) * c.context.properties.timestamp_period_ns * 1e-6;
+    return static_cast<double>((ticks[to] - ticks[from]) & c.context.timestamp_mask) *
+           c.context.properties.timestamp_period_ns * 1e-6;
   };
   times.total_ms = since(0, c.query_count - 1);
   for (const std::uint32_t query : c.mark_queries) times.marks_ms.push_back(since(0, query));

@@ -42,7 +42,8 @@ class Recorder {
     std::vector<double> steps_ms;  // each step, in order; empty unless Timestamps::every_step
   };
 
-  // Ends the recording at the first call. Throws DeviceError if the device is not done within the limit.
+  // Ends the recording at the first call. A device that is not done within the limit ends the program, with
+  // one line.
   Times submit_and_wait(double limit_seconds);
 
  private:

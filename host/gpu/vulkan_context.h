@@ -28,6 +28,7 @@ struct VulkanContext {
   vk::raii::Device device{nullptr};
   vk::raii::Queue queue{nullptr};
   std::uint32_t queue_family = 0;
+  std::uint64_t timestamp_mask = 0;  // the bits that count
   vk::raii::CommandPool command_pool{nullptr};
   vk::raii::PipelineLayout pipeline_layout{nullptr};  // 128 bytes of push constants, no descriptors
   std::map<PipelineKey, vk::raii::Pipeline> pipelines;
