@@ -1,11 +1,21 @@
 #include "builders/leaves.h"
 
+#include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
 #include <limits>
 #include <stdexcept>
 
+#include "builders/threads.h"
+
 namespace coppice {
+namespace {
+
+constexpr std::size_t CHUNK = 1 << 14;
+
+const Aabb EMPTY_BOX = {vec3(std::numeric_limits<float>::infinity()),
+                        vec3(-std::numeric_limits<float>::infinity())};
+
+}  // namespace
 
 bool is_active(const Triangle& triangle) {
   // One bit for each coordinate and no branch: almost every triangle is active.
@@ -24,26 +34,48 @@ Aabb triangle_box(const Triangle& triangle) {
 }
 
 std::vector<Node> make_leaves(std::span<const Triangle> triangles) {
+  return make_leaves(triangles, Threads(1));
+}
+
+std::vector<Node> make_leaves(std::span<const Triangle> triangles, const Threads& threads) {
   if (triangles.size() > std::size_t{1} << 31) throw std::length_error("more than 2^31 triangles");
-  std::vector<Node> leaves;
-  leaves.reserve(triangles.size());
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    if (!is_active(triangles[i])) continue;
-    const Aabb box = triangle_box(triangles[i]);
-    leaves.push_back({box.box_min, static_cast<std::uint32_t>(i), box.box_max, 0});
+  std::vector<Node> leaves(triangles.size());
+  // Each chunk puts its leaves to where they are if every triangle before is active; mostly that is final.
+  std::vector<std::size_t> counts(chunk_count(triangles.size(), CHUNK));
+  threads.for_each_chunk(triangles.size(), CHUNK, [&](Chunk chunk, std::size_t k) {
+    std::size_t next = chunk.begin;
+    for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
+      if (!is_active(triangles[i])) continue;
+      const Aabb box = triangle_box(triangles[i]);
+      leaves[next++] = {box.box_min, static_cast<std::uint32_t>(i), box.box_max, 0};
+    }
+    counts[k] = next - chunk.begin;
+  });
+  std::size_t active_count = 0;
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    const auto first = leaves.begin() + static_cast<std::ptrdiff_t>(k * CHUNK);
+    const auto place = leaves.begin() + static_cast<std::ptrdiff_t>(active_count);
+    if (place != first) std::copy(first, first + static_cast<std::ptrdiff_t>(counts[k]), place);
+    active_count += counts[k];
   }
+  leaves.resize(active_count);
   return leaves;
 }
 
-Aabb box_union(const Aabb& a, const Aabb& b) {
-  return {glm::min(a.box_min, b.box_min), glm::max(a.box_max, b.box_max)};
-}
-
 Aabb bounds_of(std::span<const Node> nodes) {
-  const float infinity = std::numeric_limits<float>::infinity();
-  Aabb bounds{vec3(infinity), vec3(-infinity)};
+  Aabb bounds = EMPTY_BOX;
   for (const Node& node : nodes) bounds = box_union(bounds, {node.box_min, node.box_max});
   return bounds;
+}
+
+Aabb bounds_of(std::span<const Node> nodes, const Threads& threads) {
+  std::vector<Aabb> bounds(chunk_count(nodes.size(), CHUNK));
+  threads.for_each_chunk(nodes.size(), CHUNK, [&](Chunk chunk, std::size_t k) {
+    bounds[k] = bounds_of(nodes.subspan(chunk.begin, chunk.count()));
+  });
+  Aabb all = EMPTY_BOX;
+  for (const Aabb& box : bounds) all = box_union(all, box);
+  return all;
 }
 
 }  // namespace coppice

@@ -4,14 +4,18 @@
 #include <array>
 #include <cmath>
 #include <glm/common.hpp>
+#include <memory>
+#include <utility>
 
 #include "builders/leaves.h"
+#include "builders/threads.h"
 
 namespace coppice {
 namespace {
 
 constexpr int DIGIT_BITS = 11;
 constexpr std::uint32_t DIGITS = 1u << DIGIT_BITS;
+constexpr std::size_t BLOCK = 1 << 16;  // codes that one thread sorts at a time
 
 template <class Code>
 struct CodeOfPrimitive {
@@ -34,53 +38,88 @@ std::uint64_t spread_bits(std::uint64_t x) {
   return x;
 }
 
+// One pass of the sort: counts in blocks, sums over the blocks, then each block has places of its own to go
+// to.
 template <class Code>
-std::vector<std::uint32_t> radix_sorted_order(std::span<const std::uint64_t> codes, int code_bits) {
-  const int passes = (code_bits + DIGIT_BITS - 1) / DIGIT_BITS;
-  std::vector<CodeOfPrimitive<Code>> from(codes.size());
-  std::vector<CodeOfPrimitive<Code>> to(codes.size());
-  std::vector<std::array<std::uint32_t, DIGITS>> counts(passes);
-  for (std::size_t i = 0; i < codes.size(); ++i) {
-    from[i] = {static_cast<Code>(codes[i]), static_cast<std::uint32_t>(i)};
-    for (int pass = 0; pass < passes; ++pass) ++counts[pass][digit_of(from[i].code, pass)];
+void sort_by_digit(std::span<const CodeOfPrimitive<Code>> from, std::span<CodeOfPrimitive<Code>> to, int pass,
+                   const Threads& threads) {
+  using Counts = std::array<std::uint32_t, DIGITS>;
+  std::vector<Counts> counts(chunk_count(from.size(), BLOCK));
+  threads.for_each_chunk(from.size(), BLOCK, [&](Chunk block, std::size_t k) {
+    Counts& own = counts[k];
+    for (const auto& pair : from.subspan(block.begin, block.count())) ++own[digit_of(pair.code, pass)];
+  });
+  std::uint32_t sum = 0;
+  for (std::uint32_t digit = 0; digit < DIGITS; ++digit) {
+    for (Counts& of_block : counts) sum += std::exchange(of_block[digit], sum);
   }
-  for (int pass = 0; pass < passes; ++pass) {
-    std::uint32_t sum = 0;
-    for (std::uint32_t& count : counts[pass]) {
-      const std::uint32_t smaller_digits = sum;
-      sum += count;
-      count = smaller_digits;
+  threads.for_each_chunk(from.size(), BLOCK, [&](Chunk block, std::size_t k) {
+    Counts& next = counts[k];
+    for (const auto& pair : from.subspan(block.begin, block.count())) {
+      to[next[digit_of(pair.code, pass)]++] = pair;
     }
-    for (const auto& pair : from) to[counts[pass][digit_of(pair.code, pass)]++] = pair;
+  });
+}
+
+template <class Code>
+std::vector<std::uint32_t> radix_sorted_order(std::span<const std::uint64_t> codes, int code_bits,
+                                              const Threads& threads) {
+  using Pair = CodeOfPrimitive<Code>;
+  const std::size_t count = codes.size();
+  // Not vectors: these would be filled with zeros first, by one thread.
+  auto from = std::make_unique_for_overwrite<Pair[]>(count);
+  auto to = std::make_unique_for_overwrite<Pair[]>(count);
+  threads.for_each_chunk(count, BLOCK, [&](Chunk block, std::size_t) {
+    for (std::size_t i = block.begin; i < block.end; ++i) {
+      from[i] = {static_cast<Code>(codes[i]), static_cast<std::uint32_t>(i)};
+    }
+  });
+  const int passes = (code_bits + DIGIT_BITS - 1) / DIGIT_BITS;
+  for (int pass = 0; pass < passes; ++pass) {
+    sort_by_digit<Code>({from.get(), count}, {to.get(), count}, pass, threads);
     from.swap(to);
   }
-  std::vector<std::uint32_t> order(codes.size());
-  std::transform(from.begin(), from.end(), order.begin(), [](const auto& pair) { return pair.primitive; });
+  std::vector<std::uint32_t> order(count);
+  threads.for_each_chunk(count, BLOCK, [&](Chunk block, std::size_t) {
+    for (std::size_t i = block.begin; i < block.end; ++i) order[i] = from[i].primitive;
+  });
   return order;
 }
 
 }  // namespace
 
+MortonGrid::MortonGrid(const Aabb& scene, int bits_per_axis) : origin_(scene.box_min) {
+  const vec3 extent = scene.box_max - scene.box_min;
+  const float largest_extent = std::max({extent.x, extent.y, extent.z});
+  if (largest_extent == 0.0f) return;
+  cells_per_unit_ = std::ldexp(1.0f, bits_per_axis - 1 - std::ilogb(largest_extent));
+}
+
+std::uint64_t MortonGrid::code_of(const Aabb& box) const {
+  const vec3 centre = (box.box_min + box.box_max) * 0.5f;
+  const glm::uvec3 cell((centre - origin_) * cells_per_unit_);
+  return spread_bits(cell.x) << 2 | spread_bits(cell.y) << 1 | spread_bits(cell.z);
+}
+
 std::vector<std::uint64_t> morton_codes(std::span<const Aabb> boxes, int bits_per_axis) {
-  std::vector<std::uint64_t> codes(boxes.size(), 0);
+  std::vector<std::uint64_t> codes;
   if (boxes.empty()) return codes;
   Aabb scene = boxes.front();
   for (const Aabb& box : boxes) scene = box_union(scene, box);
-  const vec3 extent = scene.box_max - scene.box_min;
-  const float largest_extent = std::max({extent.x, extent.y, extent.z});
-  if (largest_extent == 0.0f) return codes;
-  const float cells_per_unit = std::ldexp(1.0f, bits_per_axis - 1 - std::ilogb(largest_extent));
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    const vec3 centre = (boxes[i].box_min + boxes[i].box_max) * 0.5f;
-    const glm::uvec3 cell((centre - scene.box_min) * cells_per_unit);
-    codes[i] = spread_bits(cell.x) << 2 | spread_bits(cell.y) << 1 | spread_bits(cell.z);
-  }
+  const MortonGrid grid(scene, bits_per_axis);
+  codes.reserve(boxes.size());
+  for (const Aabb& box : boxes) codes.push_back(grid.code_of(box));
   return codes;
 }
 
 std::vector<std::uint32_t> sorted_order(std::span<const std::uint64_t> codes, int code_bits) {
-  return code_bits <= 32 ? radix_sorted_order<std::uint32_t>(codes, code_bits)
-                         : radix_sorted_order<std::uint64_t>(codes, code_bits);
+  return sorted_order(codes, code_bits, Threads(1));
+}
+
+std::vector<std::uint32_t> sorted_order(std::span<const std::uint64_t> codes, int code_bits,
+                                        const Threads& threads) {
+  return code_bits <= 32 ? radix_sorted_order<std::uint32_t>(codes, code_bits, threads)
+                         : radix_sorted_order<std::uint64_t>(codes, code_bits, threads);
 }
 
 }  // namespace coppice

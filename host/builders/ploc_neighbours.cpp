@@ -2,36 +2,19 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <limits>
+
+#include "builders/lanes.h"
 
 namespace coppice {
 namespace {
 
-// Vectors of GCC and Clang: every operation is that of a lane, and a comparison gives all bits or none.
-// Four lanes are what any x86-64 or ARM processor has.
-constexpr std::size_t LANES = 4;
-using Floats = float __attribute__((vector_size(4 * LANES)));
-using Integers = std::int32_t __attribute__((vector_size(4 * LANES)));
-
-// Clusters searched together, so that their boxes stay in the first-level cache for all gaps.
-constexpr std::size_t TILE = 256;
+constexpr std::size_t TILE = ClusterBoxes::TILE;
 static_assert(TILE % LANES == 0);
 
 constexpr float INFINITE_AREA = std::numeric_limits<float>::infinity();
 
 constexpr std::size_t whole_lanes(std::size_t count) { return (count + LANES - 1) / LANES * LANES; }
-
-Floats load(const float* from) {
-  Floats lanes;
-  std::memcpy(&lanes, from, sizeof(lanes));
-  return lanes;
-}
-
-void store(float* to, Floats lanes) { std::memcpy(to, &lanes, sizeof(lanes)); }
-
-Floats smaller(Floats a, Floats b) { return a < b ? a : b; }
-Floats larger(Floats a, Floats b) { return a > b ? a : b; }
 
 // The best neighbours so far of LANES clusters that follow each other.
 struct Nearest {
@@ -57,30 +40,31 @@ void offer_neighbours(Nearest& best, std::size_t first, std::size_t gap, Floats 
 
 }  // namespace
 
-ClusterBoxes::ClusterBoxes(std::span<const Aabb> boxes, std::uint32_t radius)
-    : count_(boxes.size()), radius_(radius), front_(whole_lanes(radius)) {
-  const std::size_t size = front_ + count_ + radius_ + LANES;
-  for (auto* coordinate : {&min_x_, &min_y_, &min_z_}) coordinate->assign(size, -INFINITE_EXTENT);
-  for (auto* coordinate : {&max_x_, &max_y_, &max_z_}) coordinate->assign(size, INFINITE_EXTENT);
-  for (std::size_t i = 0; i < count_; ++i) {
-    min_x_[front_ + i] = boxes[i].box_min.x;
-    min_y_[front_ + i] = boxes[i].box_min.y;
-    min_z_[front_ + i] = boxes[i].box_min.z;
-    max_x_[front_ + i] = boxes[i].box_max.x;
-    max_y_[front_ + i] = boxes[i].box_max.y;
-    max_z_[front_ + i] = boxes[i].box_max.z;
+ClusterBoxes::ClusterBoxes(std::size_t count, std::uint32_t radius) : radius_(radius) {
+  const std::size_t front = whole_lanes(radius);
+  // Places of the six arrays that are used together must not fall into one set of the cache.
+  constexpr std::size_t page = 1024, stagger = 80;
+  stride_ = (front + count + radius + LANES + page - 1) / page * page + stagger;
+  storage_ = std::make_unique_for_overwrite<float[]>(6 * stride_);
+  first_ = storage_.get() + front;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::fill_n(low(axis) - front, front, -INFINITE_EXTENT);
+    std::fill_n(high(axis) - front, front, INFINITE_EXTENT);
   }
+  shrink(count);
+}
+
+ClusterBoxes::ClusterBoxes(std::span<const Aabb> boxes, std::uint32_t radius)
+    : ClusterBoxes(boxes.size(), radius) {
+  for (std::size_t i = 0; i < boxes.size(); ++i) set(i, boxes[i]);
 }
 
 void ClusterBoxes::shrink(std::size_t count) {
-  // What stood further behind the clusters than this is infinite already, or out of reach.
-  const std::size_t first = front_ + count;
-  const std::size_t last = std::min(first + radius_ + LANES, front_ + count_);
-  for (auto* coordinate : {&min_x_, &min_y_, &min_z_}) {
-    std::fill(coordinate->begin() + first, coordinate->begin() + last, -INFINITE_EXTENT);
-  }
-  for (auto* coordinate : {&max_x_, &max_y_, &max_z_}) {
-    std::fill(coordinate->begin() + first, coordinate->begin() + last, INFINITE_EXTENT);
+  // What stands further behind the clusters than this is out of reach.
+  const std::size_t reach = radius_ + LANES;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::fill_n(low(axis) + count, reach, -INFINITE_EXTENT);
+    std::fill_n(high(axis) + count, reach, INFINITE_EXTENT);
   }
   count_ = count;
 }
@@ -89,20 +73,24 @@ void ClusterBoxes::shrink(std::size_t count) {
 // and up to LANES - 1 more.
 void ClusterBoxes::write_union_areas(std::ptrdiff_t first, std::size_t count, std::size_t gap,
                                      float* areas) const {
-  const std::size_t begin = front_ + first;
+  const auto extent = [&](int axis, std::ptrdiff_t i, std::ptrdiff_t j) {
+    return larger(load(high(axis) + i), load(high(axis) + j)) -
+           smaller(load(low(axis) + i), load(low(axis) + j));
+  };
   for (std::size_t k = 0; k < count; k += LANES) {
-    const std::size_t i = begin + k;
-    const std::size_t j = i + gap;
-    const Floats x = larger(load(&max_x_[i]), load(&max_x_[j])) - smaller(load(&min_x_[i]), load(&min_x_[j]));
-    const Floats y = larger(load(&max_y_[i]), load(&max_y_[j])) - smaller(load(&min_y_[i]), load(&min_y_[j]));
-    const Floats z = larger(load(&max_z_[i]), load(&max_z_[j])) - smaller(load(&min_z_[i]), load(&min_z_[j]));
+    const std::ptrdiff_t i = first + static_cast<std::ptrdiff_t>(k);
+    const std::ptrdiff_t j = i + static_cast<std::ptrdiff_t>(gap);
+    const Floats x = extent(0, i, j);
+    const Floats y = extent(1, i, j);
+    const Floats z = extent(2, i, j);
     const Floats area = (x * y + y * z) + z * x;
     store(areas + k, area);
   }
 }
 
-void ClusterBoxes::find_nearest_in_tile(std::size_t first, std::span<std::uint32_t> nearest) const {
-  const std::size_t count = std::min(TILE, count_ - first);
+void ClusterBoxes::find_nearest_in_tile(Chunk tile, std::span<std::uint32_t> nearest) const {
+  const std::size_t first = tile.begin;
+  const std::size_t count = tile.count();
   std::array<Nearest, TILE / LANES> best;
   best.fill({});
   // Distances are symmetric: that of clusters i and i + gap, computed once, is offered to both. The areas
@@ -121,8 +109,10 @@ void ClusterBoxes::find_nearest_in_tile(std::size_t first, std::span<std::uint32
   }
 }
 
-void ClusterBoxes::find_nearest(std::span<std::uint32_t> nearest) const {
-  for (std::size_t first = 0; first < count_; first += TILE) find_nearest_in_tile(first, nearest);
+void ClusterBoxes::find_nearest(Chunk chunk, std::span<std::uint32_t> nearest) const {
+  for (std::size_t first = chunk.begin; first < chunk.end; first += TILE) {
+    find_nearest_in_tile({first, std::min(first + TILE, chunk.end)}, nearest);
+  }
 }
 
 }  // namespace coppice

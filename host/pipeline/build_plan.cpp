@@ -21,8 +21,8 @@ std::uint32_t ploc_rounds_bound(std::uint32_t clusters, std::uint32_t target) {
 }
 
 TreeSlots plan_tree(Layout& layout, std::uint32_t triangle_count, std::uint64_t node_count) {
-  return {triangle_count, layout.add<Triangle>("triangles", triangle_count), layout.add<Node>("nodes", node_count),
-          layout.add<BuildState>("state", 1)};
+  return {triangle_count, layout.add<Triangle>("triangles", triangle_count),
+          layout.add<Node>("nodes", node_count), layout.add<BuildState>("state", 1)};
 }
 
 BuildPlan plan_build(Layout& layout, std::uint32_t triangle_count, const BuildOptions& options) {
