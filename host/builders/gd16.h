@@ -27,14 +27,16 @@ struct Gd16Config {
 // that of its reference's box. Where all midpoints coincide, or the plane leaves a side empty, the first half
 // of the references, in their order, goes left.
 //
-// Triangles are not split where the subtree has no spare references left (ReferenceCap);
-// `reference_cap_reached` tells when such a split would have been cheaper.
+// Triangles are not split where the subtree has fewer spare references left than the plane crosses
+// (ReferenceCap); `reference_cap_reached` tells that such a split would have been cheaper.
+//
+// The tree is a pure function of triangles and config, whatever the number of threads.
 //
 // Early termination: the paper makes a leaf of N references where testing all, E_t = C_t A(n) N, costs no
 // more than the split, C_i A(n) + C_t (A(left) N_left + A(right) N_right); C_i = C_t = 1. A Node has no
 // count, so such a leaf cannot be stored as one: it becomes a subtree of the same references, unclipped from
-// there on and divided by halves. The references, and the work of clipping and of costs, are those of the
-// paper; node count and SAH cost are those of the subtrees.
+// there on and divided by halves. The references, and the work of clipping and of costs, are those of
+// such leaves; node count and SAH cost are those of the subtrees.
 //
 // Throws std::invalid_argument for a reference cap below one a triangle, std::length_error for more than
 // 2^31 - 1 triangles.

@@ -14,11 +14,11 @@ Floats half_areas(const std::array<LaneBox, AXES>& boxes, float scale) {
   };
   const Floats a = extent(0), b = extent(1), c = extent(2);
   // Transposed: the extents along x of all three boxes, along y, along z.
-  const Floats ab_xy = __builtin_shuffle(a, b, Integers{0, 4, 1, 5});
-  const Floats ab_z = __builtin_shuffle(a, b, Integers{2, 6, 3, 7});
-  const Floats x = __builtin_shuffle(ab_xy, c, Integers{0, 1, 4, 7});
-  const Floats y = __builtin_shuffle(ab_xy, c, Integers{2, 3, 5, 7});
-  const Floats z = __builtin_shuffle(ab_z, c, Integers{0, 1, 6, 7});
+  const Floats ab_xy = __builtin_shufflevector(a, b, 0, 4, 1, 5);
+  const Floats ab_z = __builtin_shufflevector(a, b, 2, 6, 3, 7);
+  const Floats x = __builtin_shufflevector(ab_xy, c, 0, 1, 4, 7);
+  const Floats y = __builtin_shufflevector(ab_xy, c, 2, 3, 5, 7);
+  const Floats z = __builtin_shufflevector(ab_z, c, 0, 1, 6, 7);
   return (x * y + y * z) + z * x;
 }
 
