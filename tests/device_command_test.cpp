@@ -173,6 +173,24 @@ TEST_F(Command, InactiveAndMissingTrianglesStillGiveAPicture) {
   }
 }
 
+TEST_F(Command, ComparesBuildersOnAScene) {
+  const Outcome outcome =
+      run("compare terrain:200 --builders ploc,gpu-ploc,none --size 32x24 --plot plot.svg --json -");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto rows = nlohmann::json::parse(outcome.out)[0]["builders"];
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0]["tree_hash"], rows[1]["tree_hash"]);
+  EXPECT_EQ(rows[2]["steps_per_ray"], 200);
+  EXPECT_NE(read("plot.svg").find("gpu-ploc"), std::string::npos);
+}
+
+TEST_F(Command, ARowOverItsTimeIsInfeasible) {
+  const Outcome outcome = run("compare scatter:6000000 --builders lbvh --timeout 0.1 --markdown table.md");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_NE(outcome.err.find("no builder gave a result"), std::string::npos) << outcome.err;
+  EXPECT_NE(read("table.md").find("| lbvh | X (over 0.1 s) |"), std::string::npos) << read("table.md");
+}
+
 TEST_F(Command, TraceEventsNameTheKernels) {
   ASSERT_EQ(run("build terrain:5000 --runs 1 --trace-events events.json").status, 0);
   const auto events = nlohmann::json::parse(read("events.json"))["traceEvents"];
