@@ -111,6 +111,24 @@ TEST_F(DeviceTrace, OfCoincidentTrianglesTheFirstIsHit) {
   EXPECT_EQ(traced.hits[1].triangle, NO_TRIANGLE);
 }
 
+TEST_F(DeviceTrace, InARowOfShrinkingGapsEachIsHit) {
+  const auto triangles = scene_arrays(find_hard_case("shrinking-gaps")->make(1000000, 1)).triangles;
+  const BuiltTree tree = build_on(test_device(), triangles, {});
+  std::vector<Ray> rays;
+  for (std::size_t i = 0; i < triangles.size(); i += 999) {
+    const Triangle& t = triangles[i];
+    const vec3 u = t.b - t.a, v = t.c - t.a;
+    const vec3 normal(u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x);
+    rays.push_back({t.a * 0.25f + t.b * 0.25f + t.c * 0.5f + normal, 0, -normal, infinity});
+  }
+  const Traced traced = trace_on_device(tree.nodes, triangles, rays);
+  EXPECT_EQ(traced.error_word, 0u);
+  EXPECT_EQ(hit_count(traced.hits), rays.size());
+  std::vector<Hit> cpu(rays.size());
+  trace_all(tree.nodes, triangles, rays, cpu);
+  EXPECT_EQ(compare_hits(traced.hits, cpu).other_triangle, 0u);
+}
+
 TEST_F(DeviceTrace, TooFewTurnsAreReportedByName) {
   const std::vector<Triangle> triangles = random_triangles(2000, 3, 0.5f);
   TraceOptions options = test_trace_options(1, 1);
