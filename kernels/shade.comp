@@ -3,7 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/trace.h"
-#include "lib/intersect_triangle.glsl"
+#include "lib/exact_vector.glsl"
 
 layout(local_size_x = SHADE_GROUP) in;
 layout(push_constant, scalar) uniform Push { ShadeArgs args; };

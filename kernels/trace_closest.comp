@@ -3,9 +3,8 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/trace.h"
-#include "lib/intersect_box.glsl"
-#include "lib/intersect_triangle.glsl"
 #include "lib/trace_counters.glsl"
+#include "lib/trace_ray.glsl"
 
 layout(local_size_x = TRACE_GROUP) in;
 layout(push_constant, scalar) uniform Push { TraceClosestArgs args; };
@@ -13,7 +12,13 @@ layout(push_constant, scalar) uniform Push { TraceClosestArgs args; };
 // that ends long loops by itself.
 layout(constant_id = 0) const uint TRACE_MAX_TURNS = 0xffffffffu;
 layout(constant_id = 1) const uint TRACE_VISITS = 1u;
-layout(constant_id = 2) const uint TRACE_STACK = TRACE_STACK_LIMIT;  // entries, as in the arguments
+// As in the arguments.
+layout(constant_id = 2) const uint TRACE_STACK = TRACE_STACK_LIMIT;  // entries
+layout(constant_id = 3) const uint TRACE_TRIANGLE_TEST = TRIANGLE_FAST;
+layout(constant_id = 4) const uint TRACE_BOX_TEST = BOX_FAST;
+
+#include "lib/intersect_box.glsl"
+#include "lib/intersect_triangle.glsl"
 
 const uint NO_PAIR = 0u;  // the root is no child
 
@@ -26,22 +31,20 @@ struct Traversal {
 uint stack_pair[TRACE_STACK];
 float stack_enter[TRACE_STACK];
 
-bool visit_child(Node child, BoxRay box, Ray ray, inout Hit hit, out float enter) {
+bool visit_child(Node child, TraceRay ray, inout Hit hit, out float enter) {
   enter = ray.t_min;
-  precise float leave = hit.t * SLAB_PAD;
-  if (!intersect_box(box, child.box_min, child.box_max, leave, enter)) return false;
+  if (!intersect_box(ray, child.box_min, child.box_max, hit.t, enter)) return false;
   if (child.height != 0u) return true;
   intersect_triangle(ray, args.triangles.at[child.child], child.child, hit);
   return false;
 }
 
-void visit_pair(BoxRay box, Ray ray, inout Hit hit, inout Traversal state) {
+void visit_pair(TraceRay ray, inout Hit hit, inout Traversal state) {
   Node left = args.nodes.at[state.pair], right = args.nodes.at[state.pair + 1u];
   float left_enter, right_enter;
-  bool go_left = visit_child(left, box, ray, hit, left_enter);
-  bool go_right = visit_child(right, box, ray, hit, right_enter);
-  precise float leave = hit.t * SLAB_PAD;
-  go_left = go_left && left_enter <= leave;  // the right child may have been a closer leaf
+  bool go_left = visit_child(left, ray, hit, left_enter);
+  bool go_right = visit_child(right, ray, hit, right_enter);
+  go_left = go_left && left_enter <= hit.t;  // the right child may have been a closer leaf
   ++state.steps;
   if (go_left && go_right) {
     bool left_first = left_enter <= right_enter;
@@ -56,22 +59,21 @@ void visit_pair(BoxRay box, Ray ray, inout Hit hit, inout Traversal state) {
 
 void pop_pair(Hit hit, inout Traversal state) {
   --state.top;
-  precise float leave = hit.t * SLAB_PAD;
-  if (stack_enter[state.top] <= leave) state.pair = stack_pair[state.top];
+  if (stack_enter[state.top] <= hit.t) state.pair = stack_pair[state.top];
 }
 
-uint trace(Ray ray, inout Hit hit) {
-  BoxRay box = box_ray(ray);
+// Steps taken.
+uint trace(TraceRay ray, inout Hit hit) {
   Traversal state = Traversal(NO_PAIR, 0u, 0u);
   float enter;
   Node root = args.nodes.at[0];
-  if (visit_child(root, box, ray, hit, enter)) state.pair = root.child;
+  if (visit_child(root, ray, hit, enter)) state.pair = root.child;
   uint turns = 0u;
   [[dont_unroll]] while (turns < TRACE_MAX_TURNS && (state.pair != NO_PAIR || state.top != 0u)) {
     ++turns;
     [[unroll]] for (uint k = 0u; k < TRACE_VISITS; ++k) {
       if (state.pair == NO_PAIR && state.top != 0u) pop_pair(hit, state);
-      if (state.pair != NO_PAIR) visit_pair(box, ray, hit, state);
+      if (state.pair != NO_PAIR) visit_pair(ray, hit, state);
     }
   }
   if (state.pair != NO_PAIR || state.top != 0u) atomicOr(args.state.at[0].error_word, ERROR_TRACE_STEPS);
@@ -88,11 +90,20 @@ void main() {
   uint steps = 0u;
   bool has_hit = false;
   if (present && args.state.at[0].active_count != 0u) {
-    Ray ray = args.rays.at[i];
-    Hit hit = args.hits.at[i];
-    if (can_hit(ray)) steps = trace(ray, hit);
-    args.hits.at[i] = hit;
-    has_hit = hit.triangle != NO_TRIANGLE;
+    Ray given = args.rays.at[i];
+    Hit so_far = args.hits.at[i];
+    TraceRay ray;
+    if (prepare_ray(given, ray)) {
+      Node root = args.nodes.at[0];
+      Aabb box = Aabb(root.box_min, root.box_max);
+      approach_scene(box, ray);
+      if (TRACE_BOX_TEST == BOX_ROBUST) widen_slabs(box, ray);
+      Hit hit = prepared_hit(ray, so_far);
+      steps = trace(ray, hit);
+      keep_given(ray, given, hit, so_far);
+      args.hits.at[i] = so_far;
+    }
+    has_hit = so_far.triangle != NO_TRIANGLE;
   }
   COUNT_INTO(args.counters.at[0].rays, present ? 1u : 0u)
   COUNT_INTO(args.counters.at[0].hits, has_hit ? 1u : 0u)

@@ -20,6 +20,8 @@ TraceOptions CheckedDevice::trace_options(const Options& options) const {
   trace.height = options.height;
   trace.samples = options.samples;
   trace.brute_force = options.builder == "none";
+  trace.triangle_test = options.triangle_test == "fast" ? TRIANGLE_FAST : TRIANGLE_WATERTIGHT;
+  trace.box_test = options.box_test == "fast" ? BOX_FAST : BOX_ROBUST;
   if (const std::uint32_t limit = device.properties().loop_turn_limit) {
     // Two visits a turn stretch the turns that the driver's loops may take, for a fifth more time.
     trace.max_turns = limit - 1000;

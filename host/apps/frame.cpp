@@ -45,8 +45,9 @@ Film make_film(const Scene& scene, std::span<const float> given, std::uint32_t w
                std::uint32_t samples) {
   Camera camera = frame_scene(scene, static_cast<float>(width) / static_cast<float>(height));
   if (!given.empty()) {
-    camera.position = {given[0], given[1], given[2]};
-    camera.target = {given[3], given[4], given[5]};
+    const float scale = std::ldexp(1.0f, scene.scale_exponent);
+    camera.position = vec3(given[0], given[1], given[2]) * scale;
+    camera.target = vec3(given[3], given[4], given[5]) * scale;
     camera.up = {0, 1, 0};
     if (given.size() > 6) camera.vertical_fov_degrees = given[6];
   }

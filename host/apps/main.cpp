@@ -87,6 +87,17 @@ void add_ploc(CLI::App& command, Options& options) {
       ->capture_default_str();
 }
 
+void add_intersection(CLI::App& command, Options& options) {
+  command
+      .add_option("--triangle-test", options.triangle_test,
+                  "fast: Moeller-Trumbore; watertight: Woop, Benthin and Wald")
+      ->check(CLI::IsMember({"auto", "fast", "watertight"}))
+      ->capture_default_str();
+  command.add_option("--box-test", options.box_test, "robust: slabs widened by the rounding error")
+      ->check(CLI::IsMember({"auto", "fast", "robust"}))
+      ->capture_default_str();
+}
+
 void add_picture(CLI::App& command, Options& options) {
   command.add_option("--size", options.size, "pixels, default 1024x768")->type_name("WxH");
   command
@@ -134,6 +145,7 @@ int run(int argc, char** argv) {
   compare->add_option("--device", options.device, "part of a device's name, or its index")
       ->type_name("NAME|INDEX");
   add_ploc(*compare, options);
+  for (CLI::App* const command : {render, lockstep, compare}) add_intersection(*command, options);
   for (CLI::App* const command : {render, compare})
     command->add_option("--runs", options.frames, "build and trace so many times; times are medians")
         ->check(CLI::Range(1u, 10000u))

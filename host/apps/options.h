@@ -30,6 +30,8 @@ struct Options {
   std::uint32_t width = 1024, height = 768;
   std::uint32_t samples = 1;
   std::string tracer = "gpu";
+  std::string triangle_test = "auto";  // auto, fast, watertight
+  std::string box_test = "auto";       // auto, fast, robust
   std::vector<float>
       camera;  // eye, target and, if given, the vertical field of view in degrees; empty: the scene's
 };

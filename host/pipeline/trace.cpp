@@ -15,31 +15,34 @@ constexpr std::uint32_t max_band_pixels = 1u << 20;
 
 uvec3 groups_of(std::uint32_t count, std::uint32_t group) { return {(count + group - 1) / group, 1, 1}; }
 
-void append_closest_hits(Chain& chain, const TreeSlots& tree, const TracePlan& plan,
-                         std::uint32_t ray_count) {
+}  // namespace
+
+void append_closest_hits(Chain& chain, const TreeSlots& tree, const RaySlots& slots, std::uint32_t ray_count,
+                         const TraceOptions& options) {
   const uvec3 groups = groups_of(ray_count, TRACE_GROUP);
   const auto triangles = chain.at(tree.triangles);
-  const auto rays = chain.at(plan.rays);
-  const auto hits = chain.at(plan.hits);
-  const auto counters = chain.at(plan.counters);
-  if (!plan.options.brute_force) {
+  const auto rays = chain.at(slots.rays);
+  const auto hits = chain.at(slots.hits);
+  const auto counters = chain.at(slots.counters);
+  if (!options.brute_force) {
     chain.run(stages::trace_closest,
               {chain.at(tree.nodes), triangles, rays, hits, counters, chain.at(tree.state), ray_count,
-               plan.options.stack_entries},
-              groups, {plan.options.max_turns, plan.options.visits_per_turn, plan.options.stack_entries});
+               options.stack_entries, options.triangle_test, options.box_test},
+              groups,
+              {options.max_turns, options.visits_per_turn, options.stack_entries, options.triangle_test,
+               options.box_test});
     return;
   }
   std::uint32_t first = 0;
   do {
     const std::uint32_t count = std::min(BRUTE_FORCE_SLICE, tree.triangle_count - first);
     const bool last = first + count == tree.triangle_count;
-    chain.run(stages::trace_brute_force, {triangles, rays, hits, counters, ray_count, first, count, last},
-              groups);
+    chain.run(stages::trace_brute_force,
+              {triangles, rays, hits, counters, ray_count, first, count, last, options.triangle_test, 0},
+              groups, {options.triangle_test});
     first += count;
   } while (first < tree.triangle_count);
 }
-
-}  // namespace
 
 std::array<uint, 256> srgb_thresholds() {
   std::array<uint, 256> thresholds;
@@ -82,7 +85,7 @@ void append_trace(Chain& chain, const TreeSlots& tree, const TracePlan& plan) {
     for (std::uint32_t sample = 0; sample < plan.options.samples; ++sample) {
       chain.run(stages::camera_rays, {chain.at(plan.film), rays, hits, first, count, sample, 0},
                 groups_of(count, CAMERA_RAYS_GROUP));
-      append_closest_hits(chain, tree, plan, count);
+      append_closest_hits(chain, tree, plan, count, plan.options);
       chain.run(stages::shade,
                 {chain.at(tree.triangles), chain.at(plan.material_index), chain.at(plan.materials),
                  chain.at(plan.lighting), rays, hits, radiance, count, sample},

@@ -18,11 +18,20 @@ struct TraceOptions {
   std::uint32_t visits_per_turn = 1;
   // Entries of the traversal stack; a tree that is higher is refused by name.
   std::uint32_t stack_entries = TRACE_STACK_LIMIT;
+  std::uint32_t triangle_test = TRIANGLE_FAST;
+  std::uint32_t box_test = BOX_FAST;
   bool directional_light = true;  // what the scene calls for
 };
 
-// Where a trace keeps what, beside the tree it walks.
-struct TracePlan {
+// Rays, and what they hit: closest hits so far on the way in, t_max and NO_TRIANGLE where there is none yet.
+struct RaySlots {
+  Slot<Ray> rays;
+  Slot<Hit> hits;
+  Slot<TraceCounters> counters;
+};
+
+// Where a trace of a picture keeps what, beside the tree it walks.
+struct TracePlan : RaySlots {
   TraceOptions options;
   std::uint32_t band_pixels;  // the image is traced in bands of at most so many pixels
 
@@ -32,16 +41,18 @@ struct TracePlan {
   Slot<Lighting> lighting;          // in
   Slot<uint> srgb_thresholds;       // in: see srgb_thresholds()
   Slot<uint> image;                 // out: RGBA8, red in the low byte, rows top to bottom
-  Slot<TraceCounters> counters;     // out
 
-  Slot<Ray> rays;
-  Slot<Hit> hits;
   Slot<vec3> radiance;
 };
 
 // Throws LayoutError if a slot does not fit a block.
 TracePlan plan_trace(Layout& layout, const TreeSlots& tree, std::uint32_t material_count,
                      const TraceOptions& options);
+
+// The closest hits of the first `ray_count` rays, improved in place. Of the options the size of the picture,
+// the samples and the light do not matter.
+void append_closest_hits(Chain& chain, const TreeSlots& tree, const RaySlots& slots, std::uint32_t ray_count,
+                         const TraceOptions& options);
 
 // Tree to image: camera rays, closest hits, shading, sRGB.
 void append_trace(Chain& chain, const TreeSlots& tree, const TracePlan& plan);

@@ -68,6 +68,25 @@ std::uint32_t count_inactive(const Scene& scene) {
                                                   [&](glm::uvec3 t) { return !is_active(scene, t); }));
 }
 
+void bring_into_range(Scene& scene) {
+  const Bounds bounds = active_bounds(scene);
+  if (bounds.empty()) return;
+  const glm::dvec3 sizes = glm::max(glm::abs(bounds.low), glm::abs(bounds.high));
+  const double largest = std::max({sizes.x, sizes.y, sizes.z});
+  if (largest == 0 || (largest >= 0x1p-30 && largest <= 0x1p30)) return;
+  const int exponent = 30 - std::ilogb(largest);
+  const auto scaled = [exponent](float x) { return static_cast<float>(std::ldexp(double{x}, exponent)); };
+  for (glm::vec3& position : scene.positions) {
+    position = {scaled(position.x), scaled(position.y), scaled(position.z)};
+  }
+  if (scene.camera) {
+    for (glm::vec3* const point : {&scene.camera->position, &scene.camera->target}) {
+      *point = {scaled(point->x), scaled(point->y), scaled(point->z)};
+    }
+  }
+  scene.scale_exponent += exponent;
+}
+
 Camera frame_scene(const Scene& scene, float aspect) {
   if (scene.camera) return *scene.camera;
 

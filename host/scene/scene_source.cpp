@@ -78,6 +78,18 @@ Scene open_file(const std::string& spec) {
                    "': neither a file nor a built-in scene (see 'coppice scenes')");
 }
 
+Scene open_unscaled(const std::string& spec) {
+  if (spec.starts_with("hard:")) return open_hard_case(spec);
+  const auto [name, count] = split(spec);
+  if (name == "grove") {
+    if (count) throw InputError("scene 'grove' has one size, it takes no number of triangles");
+    return make_grove();
+  }
+  if (name == "scatter") return make_scatter(parse_count(spec, count, SCATTER_DEFAULT));
+  if (name == "terrain") return make_terrain(parse_count(spec, count, TERRAIN_DEFAULT));
+  return open_file(spec);
+}
+
 }  // namespace
 
 std::vector<SceneListing> list_scenes() {
@@ -94,15 +106,9 @@ std::vector<SceneListing> list_scenes() {
 }
 
 Scene open_scene(const std::string& spec) {
-  if (spec.starts_with("hard:")) return open_hard_case(spec);
-  const auto [name, count] = split(spec);
-  if (name == "grove") {
-    if (count) throw InputError("scene 'grove' has one size, it takes no number of triangles");
-    return make_grove();
-  }
-  if (name == "scatter") return make_scatter(parse_count(spec, count, SCATTER_DEFAULT));
-  if (name == "terrain") return make_terrain(parse_count(spec, count, TERRAIN_DEFAULT));
-  return open_file(spec);
+  Scene scene = open_unscaled(spec);
+  bring_into_range(scene);
+  return scene;
 }
 
 }  // namespace coppice

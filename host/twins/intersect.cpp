@@ -1,45 +1,22 @@
 #include "twins/intersect.h"
 
-#include <cfloat>
+#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
+
+#include "twins/error_free.h"
+#include "twins/vectors.h"
 
 namespace coppice::twins {
 
-float dot_product(const vec3& a, const vec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+namespace {
 
-vec3 cross_product(const vec3& a, const vec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+void keep_closer(const TraceRay& ray, const Hit& candidate, Hit& hit) {
+  const bool closer = candidate.t < hit.t || (candidate.t == hit.t && candidate.triangle < hit.triangle);
+  if (candidate.t >= ray.t_min && closer) hit = candidate;
 }
 
-vec3 unit_vector(const vec3& v) {
-  const float largest = std::fmax(std::fmax(std::fabs(v.x), std::fabs(v.y)), std::fabs(v.z));
-  if (largest == 0) return vec3(0);
-  const vec3 scaled(v.x / largest, v.y / largest, v.z / largest);
-  const float length = std::sqrt(dot_product(scaled, scaled));
-  return {scaled.x / length, scaled.y / length, scaled.z / length};
-}
-
-bool ray_meets_box(const Ray& ray, const vec3& box_min, const vec3& box_max, float t_min, float t_max,
-                   float& enter) {
-  enter = t_min;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float direction = ray.direction[axis];
-    const float inverse = std::fabs(direction) < FLT_MIN
-                              ? std::copysign(std::numeric_limits<float>::infinity(), direction)
-                              : 1.0f / direction;
-    float near = (box_min[axis] - ray.origin[axis]) * inverse;
-    float far = (box_max[axis] - ray.origin[axis]) * inverse;
-    if (inverse < 0) std::swap(near, far);
-    far *= slab_pad;
-    if (near > enter) enter = near;  // false for the NaN of a ray in the slab's plane
-    if (far < t_max) t_max = far;
-  }
-  return enter <= t_max;
-}
-
-void ray_meets_triangle(const Ray& ray, const Triangle& triangle, uint index, Hit& hit) {
+void meet_fast(const TraceRay& ray, const Triangle& triangle, uint index, Hit& hit) {
   const vec3 edge_b = triangle.b - triangle.a, edge_c = triangle.c - triangle.a;
   const vec3 p = cross_product(ray.direction, edge_c);
   const float determinant = dot_product(edge_b, p);
@@ -50,19 +27,80 @@ void ray_meets_triangle(const Ray& ray, const Triangle& triangle, uint index, Hi
   const float u = std::copysign(1.0f, determinant) * dot_product(from_a, p);
   const float v = std::copysign(1.0f, determinant) * dot_product(ray.direction, q);
   const bool inside = u >= 0 && v >= 0 && u + v <= size;
-  if (!inside) return;
-  const float t = dot_product(edge_c, q) / determinant;
-  const bool closer = t < hit.t || (t == hit.t && index < hit.triangle);
-  if (t >= ray.t_min && closer) hit = {t, index, u / size, v / size};
+  if (inside) keep_closer(ray, {dot_product(edge_c, q) / determinant, index, u / size, v / size}, hit);
 }
 
-bool ray_is_sound(const Ray& ray) {
-  bool moves = false;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (std::isnan(ray.origin[axis]) || std::isnan(ray.direction[axis])) return false;
-    moves = moves || ray.direction[axis] != 0;
+// A corner in the ray's own space, where the ray is the z axis.
+struct Corner {
+  float x, y, z;
+};
+
+Corner sheared(const TraceRay& ray, const vec3& position) {
+  const vec3 from_origin = position - ray.origin;
+  const float z = from_origin[ray.axis];
+  return {from_origin[(ray.axis + 1) % 3] - ray.shear[0] * z,
+          from_origin[(ray.axis + 2) % 3] - ray.shear[1] * z, z};
+}
+
+// On which side of the edge from p to q the ray passes. The sign is exact.
+float edge_function(const Corner& p, const Corner& q) {
+  const Unrounded first = exact_product(q.x, p.y), second = exact_product(q.y, p.x);
+  if (first.value != second.value) return first.value - second.value;
+  return first.rest - second.rest;
+}
+
+void meet_watertight(const TraceRay& ray, const Triangle& triangle, uint index, Hit& hit) {
+  Corner corners[3] = {sheared(ray, triangle.a), sheared(ray, triangle.b), sheared(ray, triangle.c)};
+  float size = 0;
+  for (const Corner& corner : corners) {
+    // A NaN stays: no comparison with it is true, and the maximum is taken by negation.
+    for (const float x : {corner.x, corner.y}) {
+      if (!(std::fabs(x) <= size)) size = std::fabs(x);
+    }
   }
-  return moves && ray.t_min <= ray.t_max;
+  if (!(size > 0) || !std::isfinite(size)) return;
+  const float scale = std::ldexp(1.0f, std::clamp(-std::ilogb(size), -126, 127));
+  for (Corner& corner : corners) {
+    corner.x *= scale;
+    corner.y *= scale;
+  }
+  const auto& [a, b, c] = corners;
+  const float beside_bc = edge_function(b, c), beside_ca = edge_function(c, a),
+              beside_ab = edge_function(a, b);
+  const bool left = beside_bc < 0 || beside_ca < 0 || beside_ab < 0;
+  const bool right = beside_bc > 0 || beside_ca > 0 || beside_ab > 0;
+  const float sum = beside_bc + beside_ca + beside_ab;
+  if (left == right || sum == 0) return;
+  const float depth = (beside_bc * a.z + beside_ca * b.z + beside_ab * c.z) / sum;
+  keep_closer(ray, {depth * ray.stretch, index, beside_ca / sum, beside_ab / sum}, hit);
+}
+
+}  // namespace
+
+bool ray_meets_box(const TraceRay& ray, const vec3& box_min, const vec3& box_max, uint box_test, float t_max,
+                   float& enter) {
+  enter = ray.t_min;
+  for (int axis = 0; axis < 3; ++axis) {
+    float near = (box_min[axis] - ray.origin[axis]) * ray.inverse[axis];
+    float far = (box_max[axis] - ray.origin[axis]) * ray.inverse[axis];
+    if (ray.inverse[axis] < 0) std::swap(near, far);
+    if (box_test == BOX_ROBUST) {
+      near -= ray.slab_pad[axis];
+      far += ray.slab_pad[axis];
+    }
+    if (near > enter) enter = near;  // false for the NaN of a ray in the slab's plane
+    if (far < t_max) t_max = far;
+  }
+  return enter <= t_max;
+}
+
+void ray_meets_triangle(const TraceRay& ray, const Triangle& triangle, uint index, uint triangle_test,
+                        Hit& hit) {
+  if (triangle_test == TRIANGLE_WATERTIGHT) {
+    meet_watertight(ray, triangle, index, hit);
+  } else {
+    meet_fast(ray, triangle, index, hit);
+  }
 }
 
 }  // namespace coppice::twins

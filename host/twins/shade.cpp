@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "interface/trace.h"
-#include "twins/intersect.h"
+#include "twins/vectors.h"
 
 namespace coppice::twins {
 

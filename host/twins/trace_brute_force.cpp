@@ -8,10 +8,13 @@ void trace_brute_force(const TraceBruteForceArgs& args) {
   TraceCounters& counters = args.counters[0];
   for (uint i = 0; i < args.ray_count; ++i) {
     count_into(counters.steps, args.triangle_count);
-    if (ray_is_sound(args.rays[i])) {
+    const TraceRay ray(args.rays[i]);
+    if (ray.is_sound) {
+      Hit hit = ray.prepared(args.hits[i]);
       for (uint k = args.first_triangle; k < args.first_triangle + args.triangle_count; ++k) {
-        ray_meets_triangle(args.rays[i], args.triangles[k], k, args.hits[i]);
+        ray_meets_triangle(ray, args.triangles[k], k, args.triangle_test, hit);
       }
+      ray.keep(hit, args.hits[i]);
     }
     if (!args.last_slice) continue;
     count_into(counters.rays, 1);

@@ -15,13 +15,13 @@ struct Visit {
 };
 
 // Depth-first, nearer child first. Returns how many pairs of children it visited.
-uint trace(const TraceClosestArgs& args, const Ray& ray, Hit& hit) {
+uint trace(const TraceClosestArgs& args, const TraceRay& ray, Hit& hit) {
   std::vector<Visit> stack;
   const auto meet = [&](const Node& child) {
     float enter;
-    if (!ray_meets_box(ray, child.box_min, child.box_max, ray.t_min, hit.t * slab_pad, enter)) return false;
+    if (!ray_meets_box(ray, child.box_min, child.box_max, args.box_test, hit.t, enter)) return false;
     if (child.height == 0) {
-      ray_meets_triangle(ray, args.triangles[child.child], child.child, hit);
+      ray_meets_triangle(ray, args.triangles[child.child], child.child, args.triangle_test, hit);
       return false;
     }
     stack.push_back({enter, child.child});
@@ -33,7 +33,7 @@ uint trace(const TraceClosestArgs& args, const Ray& ray, Hit& hit) {
   while (!stack.empty()) {
     const Visit visit = stack.back();
     stack.pop_back();
-    if (visit.enter > hit.t * slab_pad) continue;
+    if (visit.enter > hit.t) continue;
     ++steps;
     const bool left = meet(args.nodes[visit.pair]);
     const bool right = meet(args.nodes[visit.pair + 1]);
@@ -56,8 +56,15 @@ void trace_closest(const TraceClosestArgs& args) {
     return;
   }
   for (uint i = 0; i < args.ray_count; ++i) {
-    if (!empty && ray_is_sound(args.rays[i]))
-      count_into(counters.steps, trace(args, args.rays[i], args.hits[i]));
+    TraceRay ray(args.rays[i]);
+    if (!empty && ray.is_sound) {
+      const Node& root = args.nodes[0];
+      ray.approach(root.box_min, root.box_max);
+      ray.widen_slabs(root.box_min, root.box_max);
+      Hit hit = ray.prepared(args.hits[i]);
+      count_into(counters.steps, trace(args, ray, hit));
+      ray.keep(hit, args.hits[i]);
+    }
     count_into(counters.rays, 1);
     count_into(counters.hits, args.hits[i].triangle != NO_TRIANGLE);
   }

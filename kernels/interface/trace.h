@@ -12,11 +12,19 @@ const uint TRACE_STACK_LIMIT = 256;    // most entries of a traversal stack
 const uint BRUTE_FORCE_SLICE = 16384;  // triangles one dispatch tests, below old lavapipe's loop limit
 const uint NO_TRIANGLE = 0xffffffffu;
 
+// Which tests a trace uses; both in the arguments and as specialization constants.
+const uint TRIANGLE_FAST = 0;        // Moller and Trumbore 1997
+const uint TRIANGLE_WATERTIGHT = 1;  // Woop, Benthin and Wald 2013
+const uint BOX_FAST = 0;             // slabs as they come
+const uint BOX_ROBUST = 1;           // slabs widened by the error bound, after Ize 2013
+
+// A ray hits nothing with a NaN, an infinite origin or direction, an empty range (t_min > t_max), or a
+// direction whose components are all zero or denormal. Components below 2^-64 of the largest count as 0.
 struct Ray {
   vec3 origin;
   float t_min;
   vec3 direction;  // any length; t is in units of it
-  float t_max;
+  float t_max;     // may be infinite
 };
 
 // Closest hit; of equally close triangles the one with the smallest index, whatever the order of traversal.
@@ -82,11 +90,13 @@ struct TraceClosestArgs {
   NodeBuffer nodes;
   TriangleBuffer triangles;
   RayBuffer rays;
-  HitBuffer hits;
+  HitBuffer hits;  // read and improved
   TraceCountersBuffer counters;
   BuildStateBuffer state;
   uint ray_count;
   uint stack_entries;  // a tree of greater height is refused (ERROR_TREE_TOO_DEEP)
+  uint triangle_test;  // TRIANGLE_
+  uint box_test;       // BOX_
 };
 
 struct TraceBruteForceArgs {
@@ -98,6 +108,8 @@ struct TraceBruteForceArgs {
   uint first_triangle;
   uint triangle_count;  // of this slice
   uint last_slice;      // 1: count rays and hits
+  uint triangle_test;   // TRIANGLE_
+  uint padding;
 };
 
 struct ShadeArgs {

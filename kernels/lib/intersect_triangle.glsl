@@ -1,18 +1,14 @@
+// Ray and triangle, from both sides. Of equally close triangles the smallest index wins, whatever the order of tests.
+#include "lib/exact_vector.glsl"
+
+void keep_closer(TraceRay ray, float t, uint index, float u, float v, inout Hit hit) {
+  if (!(t >= ray.t_min && t <= hit.t) || (t == hit.t && index >= hit.triangle)) return;
+  hit = Hit(t, index, u, v);
+}
+
 // Moller and Trumbore 1997, without a threshold: the inside tests compare with the determinant itself, so they hold at
 // every scale, and only a determinant of zero (edge-on or degenerate) misses.
-
-vec3 exact_cross(vec3 a, vec3 b) {
-  precise vec3 product = a.yzx * b.zxy - a.zxy * b.yzx;
-  return product;
-}
-
-float exact_dot(vec3 a, vec3 b) {
-  precise float sum = a.x * b.x + a.y * b.y + a.z * b.z;
-  return sum;
-}
-
-// Of equally close triangles the smallest index wins, whatever the order of the tests.
-void intersect_triangle(Ray ray, Triangle triangle, uint index, inout Hit hit) {
+void intersect_fast(TraceRay ray, Triangle triangle, uint index, inout Hit hit) {
   precise vec3 edge_b = triangle.b - triangle.a;
   precise vec3 edge_c = triangle.c - triangle.a;
   vec3 p = exact_cross(ray.direction, edge_c);
@@ -25,12 +21,44 @@ void intersect_triangle(Ray ray, Triangle triangle, uint index, inout Hit hit) {
   precise float u_plus_v = u + v;
   if (!(u >= 0.0 && v >= 0.0 && u_plus_v <= determinant * side) || determinant == 0.0) return;
   float t = exact_dot(edge_c, q) / determinant;
-  if (!(t >= ray.t_min && t <= hit.t) || (t == hit.t && index >= hit.triangle)) return;
-  hit = Hit(t, index, u / (determinant * side), v / (determinant * side));
+  keep_closer(ray, t, index, u / (determinant * side), v / (determinant * side), hit);
 }
 
-// A ray with a NaN or without direction hits nothing; it is told apart before it visits the whole tree.
-bool can_hit(Ray ray) {
-  return !(any(isnan(ray.origin)) || any(isnan(ray.direction))) && ray.t_min <= ray.t_max &&
-         ray.direction != vec3(0.0);
+// Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection": corners are sheared so that the ray is the z
+// axis, and the signs of the edge functions are exact, so of the triangles around an edge or corner one is hit. Where
+// the paper goes to double, error-free transforms of floats give the same bits. Corners are scaled by a power of two
+// first, so that products neither over- nor underflow.
+void intersect_watertight(TraceRay ray, Triangle triangle, uint index, inout Hit hit) {
+  precise vec3 a = cyclic(triangle.a - ray.origin, ray.axis);
+  precise vec3 b = cyclic(triangle.b - ray.origin, ray.axis);
+  precise vec3 c = cyclic(triangle.c - ray.origin, ray.axis);
+  precise vec2 a_sheared = a.xy - ray.shear.xy * a.z;
+  precise vec2 b_sheared = b.xy - ray.shear.xy * b.z;
+  precise vec2 c_sheared = c.xy - ray.shear.xy * c.z;
+  vec2 sizes = max(max(abs(a_sheared), abs(b_sheared)), abs(c_sheared));
+  float size = max(sizes.x, sizes.y);
+  if (!(size > 0.0) || isinf(size)) return;
+  float scale = uintBitsToFloat(max(254u - (floatBitsToUint(size) >> 23), 1u) << 23);
+  precise vec2 p = a_sheared * scale, q = b_sheared * scale, r = c_sheared * scale;
+  precise float beside_bc = r.x * q.y - r.y * q.x;
+  precise float beside_ca = p.x * r.y - p.y * r.x;
+  precise float beside_ab = q.x * p.y - q.y * p.x;
+  if (beside_bc == 0.0 || beside_ca == 0.0 || beside_ab == 0.0) {
+    beside_bc = product_difference(r.x, q.y, r.y, q.x);
+    beside_ca = product_difference(p.x, r.y, p.y, r.x);
+    beside_ab = product_difference(q.x, p.y, q.y, p.x);
+  }
+  float least = min(min(beside_bc, beside_ca), beside_ab);
+  float most = max(max(beside_bc, beside_ca), beside_ab);
+  if (least < 0.0 && most > 0.0) return;
+  precise float sum = beside_bc + beside_ca + beside_ab;
+  if (!(sum != 0.0)) return;
+  precise float weighted = beside_bc * a.z + beside_ca * b.z + beside_ab * c.z;
+  precise float t = weighted / sum * ray.shear.z;
+  keep_closer(ray, t, index, beside_ca / sum, beside_ab / sum, hit);
+}
+
+void intersect_triangle(TraceRay ray, Triangle triangle, uint index, inout Hit hit) {
+  if (TRACE_TRIANGLE_TEST == TRIANGLE_WATERTIGHT) intersect_watertight(ray, triangle, index, hit);
+  else intersect_fast(ray, triangle, index, hit);
 }

@@ -3,7 +3,6 @@
 #include <cstring>
 
 #include "stages/gpu_executor.h"
-#include "stages/stages.h"
 
 namespace coppice {
 
@@ -36,43 +35,29 @@ BuiltTree build_on(Device& device, std::span<const Triangle> triangles, const Bu
 Traced trace_on_device(std::span<const Node> nodes, std::span<const Triangle> triangles,
                        std::span<const Ray> rays, const TraceOptions& options) {
   Layout layout(test_device().properties().max_block_bytes);
-  const auto node_slot = layout.add<Node>("nodes", nodes.size());
-  const auto triangle_slot = layout.add<Triangle>("triangles", triangles.size());
-  const auto ray_slot = layout.add<Ray>("rays", rays.size());
-  const auto hit_slot = layout.add<Hit>("hits", rays.size());
-  const auto counters = layout.add<TraceCounters>("counters", 1);
-  const auto state_slot = layout.add<BuildState>("state", 1);
+  const TreeSlots tree = plan_tree(layout, static_cast<std::uint32_t>(triangles.size()), nodes.size());
+  RaySlots slots;
+  slots.rays = layout.add<Ray>("rays", rays.size());
+  slots.hits = layout.add<Hit>("hits", rays.size());
+  slots.counters = layout.add<TraceCounters>("counters", 1);
 
   GpuExecutor executor(test_device(), layout);
   std::vector<Hit> hits;
   for (const Ray& ray : rays) hits.push_back({ray.t_max, NO_TRIANGLE, 0, 0});
   BuildState state{};
   state.active_count = static_cast<uint>((nodes.size() + 1) / 2);
-  executor.upload(node_slot, nodes);
-  executor.upload(triangle_slot, triangles);
-  executor.upload(ray_slot, rays);
-  executor.upload(hit_slot, std::span<const Hit>(hits));
-  executor.upload(state_slot, std::span<const BuildState>(&state, 1));
+  executor.upload(tree.nodes, nodes);
+  executor.upload(tree.triangles, triangles);
+  executor.upload(slots.rays, rays);
+  executor.upload(slots.hits, std::span<const Hit>(hits));
+  executor.upload(tree.state, std::span<const BuildState>(&state, 1));
 
   Chain chain = executor.chain();
-  const auto ray_count = static_cast<std::uint32_t>(rays.size());
-  const uvec3 groups{(ray_count + TRACE_GROUP - 1) / TRACE_GROUP, 1, 1};
-  if (!nodes.empty()) {
-    chain.run(stages::trace_closest,
-              {chain.at(node_slot), chain.at(triangle_slot), chain.at(ray_slot), chain.at(hit_slot),
-               chain.at(counters), chain.at(state_slot), ray_count, options.stack_entries},
-              groups, {options.max_turns, options.visits_per_turn, options.stack_entries});
-  } else {
-    const auto triangle_count = static_cast<std::uint32_t>(triangles.size());
-    for (std::uint32_t first = 0; first < triangle_count; first += BRUTE_FORCE_SLICE) {
-      chain.run(stages::trace_brute_force,
-                {chain.at(triangle_slot), chain.at(ray_slot), chain.at(hit_slot), chain.at(counters),
-                 ray_count, first, std::min(BRUTE_FORCE_SLICE, triangle_count - first), 0},
-                groups);
-    }
-  }
+  TraceOptions with_brute_force = options;
+  with_brute_force.brute_force = nodes.empty();
+  append_closest_hits(chain, tree, slots, static_cast<std::uint32_t>(rays.size()), with_brute_force);
   executor.record(chain.steps()).submit_and_wait(submit_limit_seconds);
-  return {executor.read(hit_slot), executor.read(state_slot)[0].error_word};
+  return {executor.read(slots.hits), executor.read(tree.state)[0].error_word};
 }
 
 }  // namespace coppice

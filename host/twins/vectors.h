@@ -1,0 +1,13 @@
+#pragma once
+
+#include "interface/types.h"
+
+namespace coppice::twins {
+
+float dot_product(const vec3& a, const vec3& b);
+vec3 cross_product(const vec3& a, const vec3& b);
+
+// Zero for a zero vector.
+vec3 unit_vector(const vec3& v);
+
+}  // namespace coppice::twins

@@ -1,0 +1,38 @@
+// Error-free transforms: the rounded sum or product of two floats, and what rounding left over. The two parts together
+// are exact. two_sum: Knuth 1969, The Art of Computer Programming 2, 4.2.2; two_product: Dekker 1971, "A
+// Floating-Point Technique for Extending the Available Precision", with the splitting of Veltkamp. No part may over- or
+// underflow.
+
+vec2 two_sum(float a, float b) {
+  precise float sum = a + b;
+  precise float b_rounded = sum - a;
+  precise float a_rounded = sum - b_rounded;
+  precise float rest = (a - a_rounded) + (b - b_rounded);
+  return vec2(sum, rest);
+}
+
+// Two halves of 12 bits, so that products of halves are exact.
+vec2 split(float a) {
+  precise float shifted = 4097.0 * a;
+  precise float high = shifted - (shifted - a);
+  precise float low = a - high;
+  return vec2(high, low);
+}
+
+vec2 two_product(float a, float b) {
+  precise float product = a * b;
+  vec2 x = split(a), y = split(b);
+  precise float rest = ((x.x * y.x - product) + x.x * y.y + x.y * y.x) + x.y * y.y;
+  return vec2(product, rest);
+}
+
+// a * b - c * d with its exact sign. Rounding is monotonic, so the plain difference has it unless it is zero; then the
+// rounded products are equal, and their rests decide.
+float product_difference(float a, float b, float c, float d) {
+  precise float difference = a * b - c * d;
+  if (difference == 0.0) {
+    precise float rest = two_product(a, b).y - two_product(c, d).y;
+    difference = rest;
+  }
+  return difference;
+}
