@@ -9,16 +9,6 @@ layout(local_size_x = SHADE_GROUP) in;
 layout(push_constant, scalar) uniform Push { ShadeArgs args; };
 layout(constant_id = 0) const uint SHADE_DIRECTIONAL_LIGHT = 1u;  // 0 where the scene has none
 
-// Divided by the largest component first: squares of large coordinates overflow, of small ones vanish.
-vec3 unit(vec3 v) {
-  vec3 size = abs(v);
-  float largest = max(max(size.x, size.y), size.z);
-  if (largest == 0.0) return vec3(0.0);
-  precise vec3 scaled = v / largest;
-  precise vec3 result = scaled / sqrt(exact_dot(scaled, scaled));
-  return result;
-}
-
 vec3 sky(vec3 direction, Lighting lighting) {
   precise float height = max(unit(direction).y, 0.0);
   precise vec3 colour = lighting.sky_horizon + (lighting.sky_zenith - lighting.sky_horizon) * height;
@@ -29,9 +19,7 @@ vec3 surface(Ray ray, uint index, Lighting lighting) {
   SurfaceMaterial material = args.materials.at[args.material_index.at[index]];
   if (SHADE_DIRECTIONAL_LIGHT == 0u) return material.ambient;
   Triangle triangle = args.triangles.at[index];
-  precise vec3 edge_b = triangle.b - triangle.a;
-  precise vec3 edge_c = triangle.c - triangle.a;
-  vec3 normal = unit(exact_cross(unit(edge_b), unit(edge_c)));
+  vec3 normal = normal_of(triangle);
   float side = exact_dot(normal, ray.direction) > 0.0 ? -1.0 : 1.0;
   float cosine = max(exact_dot(normal, lighting.light_direction) * side, 0.0);
   precise vec3 colour = material.ambient + material.diffuse * cosine;

@@ -44,6 +44,14 @@ void append_closest_hits(Chain& chain, const TreeSlots& tree, const RaySlots& sl
   } while (first < tree.triangle_count);
 }
 
+void append_bounce(Chain& chain, const TreeSlots& tree, const RaySlots& slots, const RaySlots& bounced,
+                   std::uint32_t ray_count, std::uint32_t seed) {
+  chain.run(stages::bounce_rays,
+            {chain.at(tree.triangles), chain.at(slots.rays), chain.at(slots.hits), chain.at(bounced.rays),
+             chain.at(bounced.hits), ray_count, seed},
+            groups_of(ray_count, BOUNCE_RAYS_GROUP));
+}
+
 std::array<uint, 256> srgb_thresholds() {
   std::array<uint, 256> thresholds;
   for (int code = 0; code < 256; ++code) {

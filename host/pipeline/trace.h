@@ -54,6 +54,10 @@ TracePlan plan_trace(Layout& layout, const TreeSlots& tree, std::uint32_t materi
 void append_closest_hits(Chain& chain, const TreeSlots& tree, const RaySlots& slots, std::uint32_t ray_count,
                          const TraceOptions& options);
 
+// From the hits of the first `ray_count` rays one ray each, random by `seed`, with no hit yet.
+void append_bounce(Chain& chain, const TreeSlots& tree, const RaySlots& slots, const RaySlots& bounced,
+                   std::uint32_t ray_count, std::uint32_t seed);
+
 // Tree to image: camera rays, closest hits, shading, sRGB.
 void append_trace(Chain& chain, const TreeSlots& tree, const TracePlan& plan);
 

@@ -43,8 +43,8 @@ struct Camera {
 struct Scene {
   std::string name;
   std::vector<glm::vec3> positions;
-  int scale_exponent = 0;  // positions are the file's times 2^scale_exponent, see bring_into_range
-  std::vector<glm::uvec3> indices;                 // one per triangle, into positions; always in range
+  int scale_exponent = 0;           // positions are the file's times 2^scale_exponent, see bring_into_range
+  std::vector<glm::uvec3> indices;  // one per triangle, into positions; always in range
   std::vector<std::uint32_t> material_index;       // one per triangle, into materials; always in range
   std::vector<Material> materials = {Material{}};  // never empty
   std::optional<Camera> camera;                    // absent: frame_scene chooses one
@@ -56,9 +56,9 @@ struct Scene {
 // Number of triangles with at least one non-finite vertex coordinate.
 std::uint32_t count_inactive(const Scene& scene);
 
-// Tracing multiplies up to three lengths in float. A scene whose largest active coordinate is not 0 and not from
-// 2^-30 to 2^30 is brought to [2^30, 2^31) by a power of two, which changes neither its shape nor its tree;
-// coordinates below 2^-179 of the largest are lost. Its camera comes along.
+// Tracing multiplies up to three lengths in float. A scene whose largest active coordinate is not 0 and not
+// from 2^-30 to 2^30 is brought to [2^30, 2^31) by a power of two, which changes neither its shape nor its
+// tree; coordinates below 2^-179 of the largest are lost. Its camera comes along.
 void bring_into_range(Scene& scene);
 
 // The scene's own camera where it has one, else one that sees all active triangles from a three-quarter view

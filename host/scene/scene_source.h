@@ -23,8 +23,9 @@ struct SceneListing {
 std::vector<SceneListing> list_scenes();
 
 // Opens what the user named: the path of an .obj file, "grove", "scatter[:N]", "terrain[:N]" or
-// "hard:CASE[:N]". A built-in name wins over a file of the same name ("./grove" names the file). The scene is brought into range. Throws
-// InputError where nothing answers to the name, N is out of range, or the file cannot be loaded.
+// "hard:CASE[:N]". A built-in name wins over a file of the same name ("./grove" names the file). The scene is
+// brought into range. Throws InputError where nothing answers to the name, N is out of range, or the file
+// cannot be loaded.
 Scene open_scene(const std::string& spec);
 
 }  // namespace coppice

@@ -25,6 +25,7 @@
   STAGE(camera_rays, CameraRaysArgs)            \
   STAGE(trace_closest, TraceClosestArgs)        \
   STAGE(trace_brute_force, TraceBruteForceArgs) \
+  STAGE(bounce_rays, BounceRaysArgs)            \
   STAGE(shade, ShadeArgs)                       \
   STAGE(resolve, ResolveArgs)
 

@@ -13,9 +13,7 @@ vec3 sky(const Ray& ray, const Lighting& lighting) {
 }
 
 vec3 surface(const ShadeArgs& args, const Ray& ray, uint index) {
-  const Triangle& triangle = args.triangles[index];
-  const vec3 normal =
-      unit_vector(cross_product(unit_vector(triangle.b - triangle.a), unit_vector(triangle.c - triangle.a)));
+  const vec3 normal = unit_normal(args.triangles[index]);
   const bool from_behind = dot_product(normal, ray.direction) > 0;
   const float cosine = dot_product(normal, args.lighting[0].light_direction) * (from_behind ? -1.0f : 1.0f);
   const SurfaceMaterial& material = args.materials[args.material_index[index]];

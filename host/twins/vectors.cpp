@@ -18,4 +18,9 @@ vec3 unit_vector(const vec3& v) {
   return {scaled.x / length, scaled.y / length, scaled.z / length};
 }
 
+vec3 unit_normal(const Triangle& triangle) {
+  return unit_vector(
+      cross_product(unit_vector(triangle.b - triangle.a), unit_vector(triangle.c - triangle.a)));
+}
+
 }  // namespace coppice::twins

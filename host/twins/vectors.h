@@ -10,4 +10,7 @@ vec3 cross_product(const vec3& a, const vec3& b);
 // Zero for a zero vector.
 vec3 unit_vector(const vec3& v);
 
+// Unit length; zero for a triangle without area.
+vec3 unit_normal(const Triangle& triangle);
+
 }  // namespace coppice::twins

@@ -5,6 +5,7 @@ INTERFACE_BEGIN
 
 const uint CAMERA_RAYS_GROUP = 64;
 const uint TRACE_GROUP = 64;
+const uint BOUNCE_RAYS_GROUP = 64;
 const uint SHADE_GROUP = 64;
 const uint RESOLVE_GROUP = 64;
 
@@ -110,6 +111,16 @@ struct TraceBruteForceArgs {
   uint last_slice;      // 1: count rays and hits
   uint triangle_test;   // TRIANGLE_
   uint padding;
+};
+
+struct BounceRaysArgs {
+  TriangleBuffer triangles;
+  RayBuffer rays;          // ray_count
+  HitBuffer hits;          // ray_count
+  RayBuffer bounced;       // ray_count; hits nothing where nothing was hit
+  HitBuffer bounced_hits;  // ray_count, set to misses
+  uint ray_count;
+  uint seed;
 };
 
 struct ShadeArgs {
