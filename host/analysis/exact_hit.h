@@ -50,7 +50,7 @@ struct ExactHit {
 // The closest hit, through a valid tree (find_fault names no fault) or, where `nodes` is empty, over all
 // triangles. Boxes and triangles are first tried in double with error bounds, so that only what is close to
 // the line or tied is computed exactly. (In a tree of split triangles the boxes of parts are rounded, and at
-// the seam of two parts there is only a margin, BOX_ROOM of line_walk.h.)
+// the seam of two parts there is only a margin, BOX_ROOM of exact_walk.h.)
 ExactHit closest_exact(std::span<const Node> nodes, std::span<const Triangle> triangles, const Ray& ray);
 
 }  // namespace coppice
