@@ -6,6 +6,7 @@
 #include <array>
 #include <cfloat>
 #include <cmath>
+#include <utility>
 
 #include "analysis/exact_walk.h"
 #include "builders/leaves.h"
@@ -74,8 +75,16 @@ IntegerVector in_units(const vec3& v, long unit_exponent) {
 
 // numerator / denominator * 2^exponent, the denominator positive.
 struct Fraction {
+  // The given denominator may be negative; 0 makes no number.
+  Fraction(mpz_class top, mpz_class bottom, long power)
+      : numerator(std::move(top)), denominator(std::move(bottom)), exponent(power) {
+    if (sgn(denominator) < 0) {
+      numerator = -numerator;
+      denominator = -denominator;
+    }
+  }
   mpz_class numerator, denominator;
-  long exponent = 0;
+  long exponent;
 };
 
 int compare(const Fraction& a, const Fraction& b) {
@@ -90,7 +99,7 @@ int compare(const Fraction& a, float b) {
   if (std::isinf(b)) return b > 0 ? -1 : 1;
   if (b == 0.0f) return sgn(a.numerator);
   const Binary binary(b);
-  return compare(a, Fraction{binary.mantissa, 1, binary.exponent});
+  return compare(a, Fraction(binary.mantissa, 1, binary.exponent));
 }
 
 // Rounded to nearest: a quotient of 61 to 63 bits, its last bit set where a remainder is left.
@@ -115,23 +124,16 @@ class Meeting {
   // Both finite, and the direction without denormals.
   Meeting(const Triangle& triangle, const Ray& ray) {
     const long unit = common_exponent(std::array{triangle.a, triangle.b, triangle.c, ray.origin});
-    const long direction_unit = common_exponent(std::array{ray.direction});
     const IntegerVector origin = in_units(ray.origin, unit);
-    const IntegerVector direction = in_units(ray.direction, direction_unit);
+    const IntegerVector direction = in_units(ray.direction, common_exponent(std::array{ray.direction}));
     const IntegerVector a = in_units(triangle.a, unit) - origin;
     const IntegerVector b = in_units(triangle.b, unit) - origin;
     const IntegerVector c = in_units(triangle.c, unit) - origin;
-    const IntegerVector across_bc = cross(b, c);
-    beside_bc = dot(direction, across_bc);
+    beside_bc = dot(direction, cross(b, c));
     beside_ca = dot(direction, cross(c, a));
     beside_ab = dot(direction, cross(a, b));
     // Direction . normal, since the normal is the sum of the three cross products.
     slope = beside_bc + beside_ca + beside_ab;
-    t = Fraction{dot(a, across_bc), slope, unit - direction_unit};
-    if (sgn(slope) < 0) {
-      t.numerator = -t.numerator;
-      t.denominator = -t.denominator;
-    }
   }
 
   // A slope of 0: no area, or in the plane.
@@ -144,11 +146,20 @@ class Meeting {
   bool on_border() const { return sgn(beside_bc) == 0 || sgn(beside_ca) == 0 || sgn(beside_ab) == 0; }
 
   // Only where it meets, so that all signs agree.
-  double share_of(const mpz_class& beside) const { return rounded({abs(beside), abs(slope), 0}); }
+  double share_of(const mpz_class& beside) const { return rounded(Fraction(abs(beside), abs(slope), 0)); }
 
   mpz_class beside_bc, beside_ca, beside_ab, slope;
-  Fraction t;
 };
+
+// The t of the plane of a triangle that the line meets.
+Fraction plane_distance(const Triangle& triangle, const Ray& ray) {
+  const long unit = common_exponent(std::array{triangle.a, triangle.b, triangle.c, ray.origin});
+  const long direction_unit = common_exponent(std::array{ray.direction});
+  const IntegerVector a = in_units(triangle.a, unit);
+  const IntegerVector normal = cross(in_units(triangle.b, unit) - a, in_units(triangle.c, unit) - a);
+  return Fraction(dot(a - in_units(ray.origin, unit), normal),
+                  dot(in_units(ray.direction, direction_unit), normal), unit - direction_unit);
+}
 
 Ray that_counts(const Ray& ray) { return {ray.origin, ray.t_min, direction_that_counts(ray), ray.t_max}; }
 
@@ -171,19 +182,21 @@ vec3 direction_that_counts(const Ray& ray) {
 
 ExactMeeting exact_meeting(const Triangle& triangle, const Ray& ray) {
   if (!is_active(triangle) || !can_hit(ray)) return {};
-  const Meeting meeting(triangle, that_counts(ray));
+  const Ray counted = that_counts(ray);
+  const Meeting meeting(triangle, counted);
   if (!meeting.meets()) return {};
+  const Fraction t = plane_distance(triangle, counted);
   return {.meets = true,
-          .in_range = compare(meeting.t, ray.t_min) >= 0 && compare(meeting.t, ray.t_max) <= 0,
+          .in_range = compare(t, ray.t_min) >= 0 && compare(t, ray.t_max) <= 0,
           .on_border = meeting.on_border(),
-          .t = rounded(meeting.t),
+          .t = rounded(t),
           .u = meeting.share_of(meeting.beside_ca),
           .v = meeting.share_of(meeting.beside_ab)};
 }
 
 int compare_distances(const Triangle& first, const Triangle& second, const Ray& ray) {
   const Ray counted = that_counts(ray);
-  return compare(Meeting(first, counted).t, Meeting(second, counted).t);
+  return compare(plane_distance(first, counted), plane_distance(second, counted));
 }
 
 bool is_exactly_degenerate(const Triangle& triangle) {
@@ -201,7 +214,7 @@ ExactHit closest_exact(std::span<const Node> nodes, std::span<const Triangle> tr
   std::vector<WalkEntry> stack;
   const auto limit = [&] { return closest.best() ? closest.best()->t.high : double{ray.t_max}; };
   walk_triangles(nodes, triangles, line, stack, limit, [&](std::uint32_t index) {
-    if (const auto candidate = find_candidate(line, triangles, index)) closest.offer(*candidate);
+    if (const auto candidate = find_candidate(line, triangles, index, limit())) closest.offer(*candidate);
   });
   if (!closest.best()) return {};
   const std::uint32_t index = closest.best()->triangle;

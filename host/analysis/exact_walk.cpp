@@ -90,7 +90,7 @@ Interval ExactLine::clip(const vec3& box_min, const vec3& box_max) const {
 }
 
 std::optional<Candidate> find_candidate(const ExactLine& line, std::span<const Triangle> triangles,
-                                        std::uint32_t index) {
+                                        std::uint32_t index, double exact_limit) {
   const Triangle& triangle = triangles[index];
   if (!is_active(triangle)) return std::nullopt;
   const dvec3 a = dvec3(triangle.a) - line.origin;
@@ -98,8 +98,9 @@ std::optional<Candidate> find_candidate(const ExactLine& line, std::span<const T
       tried_in_double(line, a, dvec3(triangle.b) - line.origin, dvec3(triangle.c) - line.origin);
   if (verdict == Verdict::MISSES) return std::nullopt;
   const double t_min = line.ray.t_min, t_max = line.ray.t_max;
+  const Interval t = distance_in_double(line, triangle, a);
+  if (verdict == Verdict::UNSURE && t.low > exact_limit) return std::nullopt;
   if (verdict == Verdict::MEETS) {
-    const Interval t = distance_in_double(line, triangle, a);
     if (t.low > t_max || t.high < t_min) return Candidate{index, t, false};
     if (t.low >= t_min && t.high <= t_max && std::isfinite(t.low)) return Candidate{index, t, true};
   }

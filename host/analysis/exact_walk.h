@@ -46,9 +46,10 @@ struct Candidate {
 };
 
 // Decided in double where the error bounds allow it, else exactly. None where the line does not meet the
-// triangle.
+// triangle. Beyond t = `exact_limit` there may also be none where double does not decide, which is never so
+// where the line is clearly inside (judge_hits.h).
 std::optional<Candidate> find_candidate(const ExactLine& line, std::span<const Triangle> triangles,
-                                        std::uint32_t triangle);
+                                        std::uint32_t triangle, double exact_limit);
 
 // Keeps the closest candidate in range, of equally close ones the one with the smallest index.
 class ClosestCandidate {

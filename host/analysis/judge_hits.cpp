@@ -37,8 +37,11 @@ Truth find_truth(std::span<const Node> nodes, std::span<const Triangle> triangle
   ClosestCandidate closest(line, triangles);
   const double t_max = line.ray.t_max;
   const auto limit = [&] { return std::min(truth.clear, t_max); };
+  const auto exact_limit = [&] {
+    return closest.best() ? std::max(closest.best()->t.high, std::min(truth.at_edge, limit())) : limit();
+  };
   walk_triangles(nodes, triangles, line, stack, limit, [&](std::uint32_t index) {
-    const auto candidate = find_candidate(line, triangles, index);
+    const auto candidate = find_candidate(line, triangles, index, exact_limit());
     if (!candidate || !candidate->in_range || candidate->t.low > limit()) return;
     closest.offer(*candidate);
     const HitRoom room(line, triangles[index]);
