@@ -24,6 +24,12 @@ std::string_view why_false_there(const ExactLine& line, const HitRoom& room, con
   return {};
 }
 
+// Whether all t that may be reported can be, wherever rounding leads.
+bool is_within_range(const HitRoom& room, const Ray& ray) {
+  const Interval t = room.distances();
+  return t.low >= ray.t_min && t.high <= std::min(ray.t_max, FLT_MAX);
+}
+
 // What the ray meets in truth, as far as it matters for what was reported.
 struct Truth {
   std::optional<Candidate> closest;
@@ -45,10 +51,9 @@ Truth find_truth(std::span<const Node> nodes, std::span<const Triangle> triangle
     if (!candidate || !candidate->in_range || candidate->t.low > limit()) return;
     closest.offer(*candidate);
     const HitRoom room(line, triangles[index]);
-    const Interval t = room.distances();
-    if (t.low < line.ray.t_min || t.high > std::min(t_max, double{FLT_MAX})) return;
+    if (!is_within_range(room, line.ray)) return;
     double& least = room.border > room.delta ? truth.clear : truth.at_edge;
-    least = std::min(least, t.high);
+    least = std::min(least, room.distances().high);
   });
   truth.closest = closest.best();
   return truth;
@@ -139,8 +144,8 @@ class Judge {
     const Hit& hit = hits_[i];
     const Triangle& triangle = triangles_[hit.triangle];
     const ExactMeeting exact = exact_meeting(triangle, rays_[i]);
-    if (!exact.meets) return;
     const HitRoom room(line, triangle);
+    if (!exact.meets || room.border <= room.delta || !is_within_range(room, line.ray)) return;
     const double t_error = std::abs(hit.t - exact.t);
     keep_worst(verdicts.worst_t_ulps, verdicts.example_t, t_error / last_place_of(exact.t), i);
     const double uv_error = std::max(std::abs(hit.u - exact.u), std::abs(hit.v - exact.v));

@@ -63,7 +63,9 @@ struct HitVerdicts {
   std::uint64_t false_on_degenerate = 0;  // of these: on a triangle whose exact area is 0
   std::uint64_t other_triangle = 0;       // right, but not the exact closest one: ties, edges, rounding
 
-  // Over the hits that are neither false nor of a missed ray, and whose line meets their triangle exactly.
+  // Over the hits that are neither false nor of a missed ray and that are on a triangle which is a clear hit.
+  // (Of others the errors say nothing: near an end of the range the exact t may be 0, near the border or in a
+  // grazed plane it may be anything.)
   double worst_t_ulps = 0;    // in units in the last place of the exact t as a float
   double worst_t_scaled = 0;  // error of the depth in units of 2^-24 * largest |corner - origin|
   double worst_uv_ulps = 0;   // absolute error of u or v in units of 2^-24
