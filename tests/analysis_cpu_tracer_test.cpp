@@ -186,6 +186,23 @@ TEST(BruteForceHit, MissesWithRaysThatAreNone) {
   expect_miss({vec3(0.25f, 0.25f, 1), 0, vec3(0, 0, -1), NOT_A_NUMBER});
 }
 
+TEST(BruteForceHit, MissesWithDirectionsWhoseComponentsAreAllDenormal) {
+  expect_miss(ray_from(vec3(0.25f, 0.25f, 1), vec3(0, 0, -1e-38f)));
+  expect_miss(ray_from(vec3(0.25f, 0.25f, 1e-3f), vec3(1e-40f, -1e-45f, -1.1e-38f)));
+}
+
+// Beside a component of 2e-38 one of 1e-38 would lead far off.
+TEST(BruteForceHit, TakesADenormalDirectionComponentForZero) {
+  const Ray ray = ray_from(vec3(0.25f, 0.125f, 1), vec3(1e-38f, -1e-38f, -2e-38f));
+  const std::vector<Triangle> triangles = {FLOOR};
+  for (const Hit& hit :
+       {brute_force_hit(triangles, ray), closest_hit(build_ploc(triangles).nodes, triangles, ray)}) {
+    EXPECT_EQ(hit.triangle, 0u);
+    EXPECT_EQ(hit.u, 0.25f);
+    EXPECT_EQ(hit.v, 0.125f);
+  }
+}
+
 TEST(ClosestHit, MissesInAnEmptyTree) {
   EXPECT_EQ(closest_hit({}, {}, ray_from(vec3(0), vec3(1))).triangle, NO_TRIANGLE);
 }

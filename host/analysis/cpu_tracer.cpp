@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/ext/vector_double3.hpp>
@@ -30,13 +31,14 @@ struct Interval {
 // A ray, or none where `is_valid` is false.
 class PreparedRay {
  public:
-  explicit PreparedRay(const Ray& ray)
-      : origin(ray.origin), direction(ray.direction), t_min(ray.t_min), t_max(ray.t_max) {
-    is_valid = !std::isnan(t_min) && !std::isnan(t_max);
+  explicit PreparedRay(const Ray& ray) : origin(ray.origin), t_min(ray.t_min), t_max(ray.t_max) {
+    is_valid = t_min <= t_max;
     bool has_direction = false;
     for (int axis = 0; axis < 3; ++axis) {
       is_valid &= std::isfinite(ray.origin[axis]) && std::isfinite(ray.direction[axis]);
-      has_direction |= ray.direction[axis] != 0.0f;
+      const bool counts = std::abs(ray.direction[axis]) >= FLT_MIN;
+      has_direction |= counts;
+      direction[axis] = counts ? ray.direction[axis] : 0.0f;
       reciprocal[axis] = 1.0 / direction[axis];
     }
     is_valid &= has_direction;

@@ -14,7 +14,8 @@ namespace coppice {
 // distance rounded to float and finite. The least t wins, of equal ones the smaller triangle index.
 // Neighbours that share an edge leave no gap between them. A triangle without area, or seen exactly edge-on,
 // is never hit, nor an inactive one. A miss has t = ray.t_max, triangle = NO_TRIANGLE and u = v = 0. A ray
-// with a NaN, an infinite origin or direction, or the direction 0, misses. t_max may be infinite.
+// with a NaN, an infinite origin or direction, a reversed range, or a direction whose components are all 0 or
+// denormal misses; a single denormal component counts as 0. t_max may be infinite.
 //
 // The triangle test is in Pluecker coordinates: Platis and Theoharis, "Fast Ray-Tetrahedron Intersection
 // Using Pluecker Coordinates", 2003.
