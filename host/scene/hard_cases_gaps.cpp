@@ -67,8 +67,8 @@ Scene shrinking_gaps(std::uint32_t triangle_count, std::uint64_t) {
 }
 
 // The gaps of every row shrink from 1 by 2^-13 a step, those between rows from 2 by 2^-12: the next one in
-// the row is always nearer. All of it is exact in float for the side of 8,192 that the largest grid has, but
-// for the last bits of triangles that are as many as 2^24.
+// the row is always nearer. Exact in float up to a million triangles or so; the largest grid, of 8,192 a
+// side, loses the last bits.
 Scene shrinking_gaps_plane(std::uint32_t triangle_count, std::uint64_t) {
   Scene scene = reserved_scene(triangle_count);
   const std::uint32_t columns = side_of(triangle_count);

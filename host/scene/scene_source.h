@@ -16,8 +16,9 @@ struct SceneListing {
   std::string name;         // as open_scene takes it
   std::string description;  // one line
   std::uint32_t triangles;  // the number of triangles without ":N"
-  bool takes_count;         // whether ":N" may follow the name, N from 1 to MAX_GENERATED_TRIANGLES; the
-                            // scene then has N triangles, a closed hard case what HardCase says
+  // Whether ":N" may follow the name, N from 1 to MAX_GENERATED_TRIANGLES. The scene then has N triangles, a
+  // closed hard case as many as HardCase::triangle_count says.
+  bool takes_count;
 };
 
 // The built-in scenes for looking at and for benchmarks, the default one first.
