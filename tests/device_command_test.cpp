@@ -73,7 +73,8 @@ TEST_F(Command, BadScenesAreRefusedWithStatus1) {
     const char *scene, *part;
   } cases[] = {{"missing.obj", "missing.obj"}, {"folder.obj", "folder.obj"}, {"empty.obj", "empty.obj"},
                {"binary.obj", "binary.obj"},   {"index.obj", "index.obj:4"}, {"short.obj", "short.obj:3"},
-               {"nonsense", "nonsense"},       {"scatter:0", "scatter:0"},   {"hard:nonsense", "nonsense"}};
+               {"nonsense", "nonsense"},       {"scatter:0", "scatter:0"},   {"hard:nonsense", "nonsense"},
+               {"hard:nested:5:x", "'x'"}};
   for (const auto& c : cases) expect_refused(std::string("render ") + c.scene + " -o out.png", 1, c.part);
 }
 
@@ -205,6 +206,13 @@ TEST_F(Command, TraceEventsNameTheKernels) {
 TEST_F(Command, ListsScenesAndDevices) {
   const auto scenes = nlohmann::json::parse(run("scenes --json -").out);
   EXPECT_EQ(scenes[0]["name"], "grove");
+  EXPECT_NE(run("scenes").out.find("scenes --hard"), std::string::npos);
+  const auto hard_scenes = nlohmann::json::parse(run("scenes --hard --json -").out);
+  EXPECT_EQ(hard_scenes[0]["name"], "hard:coincident");
+  const std::string hard_lines = run("scenes --hard").out;
+  for (const auto& scene : hard_scenes) {
+    EXPECT_NE(hard_lines.find(scene["name"].get<std::string>() + " "), std::string::npos) << scene["name"];
+  }
   const auto devices = nlohmann::json::parse(run("devices --json -").out);
   EXPECT_FALSE(devices.empty());
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <glm/glm.hpp>
@@ -13,33 +12,10 @@
 #include "scene/hard_cases.h"
 #include "scene/input_error.h"
 #include "scene/scene_source.h"
+#include "support/scenes.h"
 
 namespace coppice {
 namespace {
-
-bool same_bits(const Scene& a, const Scene& b) {
-  return a.positions.size() == b.positions.size() && a.indices == b.indices &&
-         a.material_index == b.material_index &&
-         std::memcmp(a.positions.data(), b.positions.data(), a.positions.size() * sizeof(glm::vec3)) == 0;
-}
-
-void expect_consistent(const Scene& scene) {
-  ASSERT_FALSE(scene.materials.empty());
-  ASSERT_EQ(scene.material_index.size(), scene.indices.size());
-  for (const glm::uvec3 t : scene.indices) ASSERT_LT(std::max({t.x, t.y, t.z}), scene.positions.size());
-  for (const std::uint32_t index : scene.material_index) ASSERT_LT(index, scene.materials.size());
-}
-
-void expect_usable_camera(const Scene& scene) {
-  for (const float aspect : {0.1f, 1.0f, 1.7f, 10.0f}) {
-    const Camera camera = frame_scene(scene, aspect);
-    for (int axis = 0; axis < 3; ++axis) {
-      EXPECT_TRUE(std::isfinite(camera.position[axis]));
-      EXPECT_TRUE(std::isfinite(camera.target[axis]));
-    }
-    EXPECT_NE(camera.position, camera.target);
-  }
-}
 
 Scene one_triangle(glm::vec3 a, glm::vec3 b, glm::vec3 c) {
   Scene scene;
@@ -91,71 +67,6 @@ TEST(Terrain, IsConnected) {
   EXPECT_LT(scene.positions.size(), 1200u);
 }
 
-class EveryHardCase : public testing::TestWithParam<HardCase> {};
-
-TEST_P(EveryHardCase, HasExactlyTheTrianglesAskedFor) {
-  const HardCase hard_case = GetParam();
-  for (const std::uint32_t count : {0u, 1u, 2u, 3u, 257u, hard_case.default_triangle_count}) {
-    const Scene scene = hard_case.make(count, 1);
-    EXPECT_EQ(scene.indices.size(), count);
-    expect_consistent(scene);
-  }
-}
-
-TEST_P(EveryHardCase, IsTheSameEveryTime) {
-  EXPECT_TRUE(same_bits(GetParam().make(1000, 7), GetParam().make(1000, 7)));
-}
-
-TEST_P(EveryHardCase, HasAUsableCamera) { expect_usable_camera(GetParam().make(1000, 1)); }
-
-std::string case_name(const testing::TestParamInfo<HardCase>& info) {
-  std::string name(info.param.name);
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
-}
-INSTANTIATE_TEST_SUITE_P(All, EveryHardCase, testing::ValuesIn(hard_cases().begin(), hard_cases().end()),
-                         case_name);
-
-TEST(HardCases, NonFiniteCountsAreAsDescribed) {
-  EXPECT_EQ(count_inactive(find_hard_case("non-finite")->make(1000, 1)), 334u);
-  EXPECT_EQ(count_inactive(find_hard_case("all-non-finite")->make(100, 1)), 100u);
-  EXPECT_EQ(count_inactive(find_hard_case("huge")->make(1000, 1)), 0u);
-  EXPECT_EQ(find_hard_case("no such case"), nullptr);
-}
-
-TEST(HardCases, NestedBoxesShareTheirCentre) {
-  const Scene scene = find_hard_case("nested")->make(300, 1);
-  for (const glm::uvec3 t : scene.indices) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto [low, high] =
-          std::minmax({scene.positions[t.x][axis], scene.positions[t.y][axis], scene.positions[t.z][axis]});
-      ASSERT_EQ(low + high, 0.0f);
-    }
-  }
-}
-
-// Half the surface area of the union of the boxes of two triangles, in float as a builder computes it.
-float union_area(const Scene& scene, std::uint32_t i, std::uint32_t j) {
-  glm::vec3 low{std::numeric_limits<float>::max()}, high{std::numeric_limits<float>::lowest()};
-  for (const std::uint32_t triangle : {i, j}) {
-    for (int corner = 0; corner < 3; ++corner) {
-      const glm::vec3 p = scene.positions[scene.indices[triangle][corner]];
-      low = glm::min(low, p), high = glm::max(high, p);
-    }
-  }
-  const glm::vec3 size = high - low;
-  return size.x * size.y + size.y * size.z + size.z * size.x;
-}
-
-TEST(HardCases, EachOfTheShrinkingGapsPrefersTheNext) {
-  const Scene scene = find_hard_case("shrinking-gaps")->make(1'000'000, 1);
-  for (std::uint32_t i = 0; i + 2 < scene.indices.size(); ++i) {
-    const float to_next = union_area(scene, i, i + 1);
-    ASSERT_GT(to_next, union_area(scene, i + 1, i + 2)) << i;  // so i + 1 prefers i + 2 to i
-    ASSERT_LT(to_next, union_area(scene, i, i + 2)) << i;      // and i prefers i + 1 to i + 2
-  }
-}
-
 TEST(FrameScene, SeesEveryCornerOfTheScene) {
   const Scene scene = one_triangle({-3, 0, 0}, {5, 1, 2}, {0, 7, -4});
   for (const float aspect : {0.5f, 1.0f, 2.0f}) {
@@ -204,22 +115,43 @@ std::string error_of(const std::string& spec) {
 }
 
 TEST(OpenScene, OpensEverythingThatIsListed) {
-  const std::vector<SceneListing> listings = list_scenes();
+  std::vector<SceneListing> listings = list_scenes();
   ASSERT_FALSE(listings.empty());
   EXPECT_EQ(listings[0].name, "grove");
+  const std::vector<SceneListing> hard_listings = list_hard_scenes();
+  EXPECT_EQ(hard_listings.size(), hard_cases().size());
+  listings.insert(listings.end(), hard_listings.begin(), hard_listings.end());
   for (const SceneListing& listing : listings) {
     const Scene scene = open_scene(listing.name);
     EXPECT_EQ(scene.indices.size(), listing.triangles) << listing.name;
     EXPECT_FALSE(scene.name.empty());
     EXPECT_FALSE(listing.description.empty());
     if (!listing.takes_count) continue;
-    EXPECT_EQ(open_scene(listing.name + ":12").indices.size(), 12u) << listing.name;
+    EXPECT_EQ(open_scene(listing.name + ":20").indices.size(), 20u) << listing.name;
   }
 }
 
 TEST(OpenScene, NamesTheSceneWithItsSize) {
   EXPECT_EQ(open_scene("scatter:12").name, "scatter:12");
   EXPECT_EQ(open_scene("hard:far:12").name, "hard:far:12");
+}
+
+TEST(OpenScene, AHardCaseTakesASeed) {
+  const HardCase& far_outlier = *find_hard_case("one-cell");
+  EXPECT_TRUE(same_bits(open_scene("hard:one-cell:50"), far_outlier.make(50, 1)));
+  EXPECT_TRUE(same_bits(open_scene("hard:one-cell:50:1"), far_outlier.make(50, 1)));
+  EXPECT_TRUE(same_bits(open_scene("hard:one-cell:50:0"), far_outlier.make(50, 0)));
+  EXPECT_TRUE(same_bits(open_scene("hard:one-cell:50:18446744073709551615"), far_outlier.make(50, ~0ull)));
+  EXPECT_FALSE(same_bits(far_outlier.make(50, 0), far_outlier.make(50, 1)));
+}
+
+TEST(OpenScene, ASeedThatIsNoneIsAnError) {
+  for (const std::string seed : {"", "-1", "x", "1.5", "0x1", "1:2", "18446744073709551616"}) {
+    EXPECT_EQ(error_of("hard:nested:5:" + seed),
+              "scene 'hard:nested:5:" + seed + "': '" + seed + "' is no seed from 0 to 18446744073709551615");
+  }
+  EXPECT_EQ(error_of("hard:nested::5"),
+            "scene 'hard:nested::5': '' is no number of triangles from 1 to 67108864");
 }
 
 TEST(OpenScene, OpensAFile) {

@@ -9,14 +9,19 @@ namespace coppice {
 
 int run_scenes(const Options& options) {
   Json rows = Json::array();
-  for (const SceneListing& scene : list_scenes()) {
-    const std::string name = scene.name + (scene.takes_count ? "[:N]" : "");
+  for (const SceneListing& scene : options.hard ? list_hard_scenes() : list_scenes()) {
+    const std::string name = scene.name + (scene.takes_count && !options.hard ? "[:N]" : "");
     if (talks(options))
-      std::printf("%-24s %9u  %s\n", name.c_str(), scene.triangles, scene.description.c_str());
+      std::printf("%-*s %9u  %s\n", options.hard ? 27 : 12, name.c_str(), scene.triangles,
+                  scene.description.c_str());
     rows.push_back({{"name", scene.name},
                     {"triangles", scene.triangles},
                     {"description", scene.description},
                     {"takes_count", scene.takes_count}});
+  }
+  if (talks(options)) {
+    std::puts(options.hard ? "Each takes a number of triangles and a seed: hard:NAME[:N[:SEED]]"
+                           : "Inputs that are hard on builders and tracers: coppice scenes --hard");
   }
   write_json(options.json, rows);
   return 0;

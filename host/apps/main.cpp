@@ -157,6 +157,7 @@ int run(int argc, char** argv) {
     add_device(*command, options);
   }
   CLI::App* const scenes = app.add_subcommand("scenes", "the built-in scenes");
+  scenes->add_flag("--hard", options.hard, "the inputs that are hard on builders and tracers instead");
   CLI::App* const devices = app.add_subcommand("devices", "the Vulkan devices");
   for (CLI::App* const command : {render, build, lockstep, compare, scenes, devices})
     add_common(*command, options);

@@ -25,6 +25,8 @@ struct Options {
   double timeout_seconds = 60;
   std::string markdown, plot;  // files; empty: none
 
+  bool hard = false;  // of `scenes`: the hard cases in place of the others
+
   std::string output = "coppice.png";
   std::string size;  // WxH as given; `width` and `height` hold it parsed
   std::uint32_t width = 1024, height = 768;

@@ -18,13 +18,13 @@ namespace {
 constexpr std::uint32_t SCATTER_DEFAULT = 1'000'000;
 constexpr std::uint32_t TERRAIN_DEFAULT = 500'000;
 
-// "name:text" as its two parts; no second part where there is no colon.
-struct NameAndCount {
+// "name:rest" as its two parts; no second part where there is no colon.
+struct NameAndRest {
   std::string_view name;
-  std::optional<std::string_view> count;
+  std::optional<std::string_view> rest;
 };
 
-NameAndCount split(std::string_view spec) {
+NameAndRest split(std::string_view spec) {
   const std::size_t colon = spec.find(':');
   if (colon == std::string_view::npos) return {spec, std::nullopt};
   return {spec.substr(0, colon), spec.substr(colon + 1)};
@@ -43,15 +43,34 @@ std::uint32_t parse_count(const std::string& spec, std::optional<std::string_vie
   return count;
 }
 
+std::uint64_t parse_seed(const std::string& spec, std::optional<std::string_view> text) {
+  if (!text) return 1;
+  std::uint64_t seed = 0;
+  const char* const end = text->data() + text->size();
+  const auto [parsed_end, error] = std::from_chars(text->data(), end, seed);
+  if (parsed_end != end || error != std::errc{}) {
+    throw InputError("scene '" + printable(std::string_view(spec)) + "': '" + printable(*text) +
+                     "' is no seed from 0 to " + std::to_string(UINT64_MAX));
+  }
+  return seed;
+}
+
 Scene open_hard_case(const std::string& spec) {
-  const auto [name, count] = split(std::string_view(spec).substr(5));
+  const auto [name, numbers] = split(std::string_view(spec).substr(5));
   const HardCase* const hard_case = find_hard_case(name);
   if (!hard_case) {
     std::string known;
     for (const HardCase& other : hard_cases()) known.append(known.empty() ? "" : ", ").append(other.name);
     throw InputError("unknown hard case '" + printable(name) + "': there are " + known);
   }
-  Scene scene = hard_case->make(parse_count(spec, count, hard_case->default_triangle_count), 1);
+  std::optional<std::string_view> count, seed;
+  if (numbers) {
+    const NameAndRest parts = split(*numbers);
+    count = parts.name;
+    seed = parts.rest;
+  }
+  const std::uint32_t triangle_count = parse_count(spec, count, hard_case->default_triangle_count);
+  Scene scene = hard_case->make(triangle_count, parse_seed(spec, seed));
   scene.name = spec;
   return scene;
 }
@@ -94,13 +113,17 @@ Scene open_unscaled(const std::string& spec) {
 
 std::vector<SceneListing> list_scenes() {
   static const auto grove_triangles = static_cast<std::uint32_t>(make_grove().indices.size());
-  std::vector<SceneListing> listings = {
+  return {
       {"grove", "a coppiced wood: stools, shoots, rocks and felled logs", grove_triangles, false},
       {"scatter", "clusters of unconnected triangles of all sizes, for benchmarks", SCATTER_DEFAULT, true},
       {"terrain", "one connected height field", TERRAIN_DEFAULT, true}};
+}
+
+std::vector<SceneListing> list_hard_scenes() {
+  std::vector<SceneListing> listings;
   for (const HardCase& hard_case : hard_cases()) {
     listings.push_back({"hard:" + std::string(hard_case.name), std::string(hard_case.description),
-                        hard_case.default_triangle_count, true});
+                        hard_case.triangle_count(hard_case.default_triangle_count), true});
   }
   return listings;
 }

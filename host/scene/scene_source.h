@@ -16,16 +16,21 @@ struct SceneListing {
   std::string name;         // as open_scene takes it
   std::string description;  // one line
   std::uint32_t triangles;  // the number of triangles without ":N"
-  bool takes_count;         // whether ":N" may follow the name, N from 1 to MAX_GENERATED_TRIANGLES
+  // Whether ":N" may follow the name, N from 1 to MAX_GENERATED_TRIANGLES. The scene then has N triangles, a
+  // closed hard case as many as HardCase::triangle_count says.
+  bool takes_count;
 };
 
-// All built-in scenes, the default one first.
+// The built-in scenes for looking at and for benchmarks, the default one first.
 std::vector<SceneListing> list_scenes();
 
+// The hard cases; ":N:SEED" may follow their names too.
+std::vector<SceneListing> list_hard_scenes();
+
 // Opens what the user named: the path of an .obj file, "grove", "scatter[:N]", "terrain[:N]" or
-// "hard:CASE[:N]". A built-in name wins over a file of the same name ("./grove" names the file). The scene is
-// brought into range. Throws InputError where nothing answers to the name, N is out of range, or the file
-// cannot be loaded.
+// "hard:CASE[:N[:SEED]]", with SEED a decimal number below 2^64, 1 if not given. A built-in name wins over a
+// file of the same name ("./grove" names the file). The scene is brought into range (bring_into_range). Throws
+// InputError where nothing answers to the name, N or SEED is out of range, or the file cannot be loaded.
 Scene open_scene(const std::string& spec);
 
 }  // namespace coppice
