@@ -111,6 +111,25 @@ void add_picture(CLI::App& command, Options& options) {
       ->capture_default_str();
 }
 
+void add_stability(CLI::App& command, Options& options) {
+  command.add_option("--cases", options.cases, "hard cases, see 'coppice scenes --hard'; default: all")
+      ->delimiter(',');
+  command.add_option("--triangles", options.most_triangles, "most triangles of a case")
+      ->check(CLI::Range(1u, 1000000u))
+      ->capture_default_str();
+  command.add_option("--rays", options.rays_of_a_kind, "rays of each kind")
+      ->check(CLI::Range(1u, 1000000u))
+      ->capture_default_str();
+  command
+      .add_option("--leak-rays", options.leak_rays,
+                  "rays from inside of each closed mesh at each of five scales; 0: none")
+      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 40))
+      ->capture_default_str();
+  command.add_option("--seed", options.seed)->capture_default_str();
+  add_ploc(command, options);
+  add_device(command, options);
+}
+
 int run(int argc, char** argv) {
   Options options;
   CLI::App app("GPU-resident BVH builder and ray tracer");
@@ -145,6 +164,9 @@ int run(int argc, char** argv) {
   compare->add_option("--device", options.device, "part of a device's name, or its index")
       ->type_name("NAME|INDEX");
   add_ploc(*compare, options);
+  CLI::App* const stability =
+      app.add_subcommand("stability", "hard cases and hard rays, with every intersection test");
+  add_stability(*stability, options);
   for (CLI::App* const command : {render, lockstep, compare}) add_intersection(*command, options);
   for (CLI::App* const command : {render, compare})
     command->add_option("--runs", options.frames, "build and trace so many times; times are medians")
@@ -159,7 +181,7 @@ int run(int argc, char** argv) {
   CLI::App* const scenes = app.add_subcommand("scenes", "the built-in scenes");
   scenes->add_flag("--hard", options.hard, "the inputs that are hard on builders and tracers instead");
   CLI::App* const devices = app.add_subcommand("devices", "the Vulkan devices");
-  for (CLI::App* const command : {render, build, lockstep, compare, scenes, devices})
+  for (CLI::App* const command : {render, build, lockstep, compare, stability, scenes, devices})
     add_common(*command, options);
 
   try {
@@ -181,6 +203,7 @@ int run(int argc, char** argv) {
   if (*build) return run_build(options);
   if (*lockstep) return run_lockstep(options);
   if (*compare) return run_compare(options);
+  if (*stability) return run_stability(options);
   if (*scenes) return run_scenes(options);
   return run_devices(options);
 }

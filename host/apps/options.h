@@ -27,6 +27,10 @@ struct Options {
 
   bool hard = false;  // of `scenes`: the hard cases in place of the others
 
+  std::vector<std::string> cases;  // of `stability`; empty: all
+  std::uint32_t most_triangles = 2000, rays_of_a_kind = 500;
+  std::uint64_t seed = 1, leak_rays = 20000;
+
   std::string output = "coppice.png";
   std::string size;  // WxH as given; `width` and `height` hold it parsed
   std::uint32_t width = 1024, height = 768;
@@ -43,6 +47,7 @@ int run_render(const Options& options);
 int run_build(const Options& options);
 int run_lockstep(const Options& options);
 int run_compare(const Options& options);
+int run_stability(const Options& options);
 int run_scenes(const Options& options);
 int run_devices(const Options& options);
 

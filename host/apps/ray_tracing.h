@@ -1,0 +1,51 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "apps/checked_device.h"
+#include "stages/cpu_executor.h"
+#include "stages/gpu_executor.h"
+
+namespace coppice {
+
+struct TracedRays {
+  std::vector<Hit> hits;
+  std::uint64_t hit_count = 0;
+  std::string error;  // what the error word said; empty: nothing
+  double ms = 0;
+};
+
+// Traces given rays through a tree that the host has, on the device and by the twins.
+class RayTracing {
+ public:
+  // The tree is uploaded once. Throws DeviceError if it does not fit, LayoutError if a slot is too large.
+  RayTracing(CheckedDevice& device, std::span<const Node> nodes, std::span<const Triangle> triangles,
+             std::uint32_t most_rays);
+
+  TracedRays on_device(std::span<const Ray> rays, const TraceOptions& options);
+  TracedRays by_twins(std::span<const Ray> rays, const TraceOptions& options);
+
+  // Rays that leave the hits of `rays`, by stage bounce_rays on the device.
+  std::vector<Ray> bounce(std::span<const Ray> rays, const TraceOptions& options, std::uint32_t seed);
+
+ private:
+  struct Slots {
+    TreeSlots tree;
+    RaySlots rays, bounced;
+  };
+  static Slots plan(Layout& layout, std::size_t nodes, std::size_t triangles, std::uint32_t most_rays);
+  template <class Executor>
+  void upload_rays(Executor& executor, std::span<const Ray> rays) const;
+  template <class Executor>
+  TracedRays result(Executor& executor, std::size_t ray_count) const;
+
+  BuildState state_{};
+  Layout layout_;
+  Slots slots_;
+  GpuExecutor gpu_;
+  CpuExecutor cpu_;
+};
+
+}  // namespace coppice

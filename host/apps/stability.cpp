@@ -1,0 +1,158 @@
+#include "apps/stability.h"
+
+#include <algorithm>
+
+#include "analysis/hard_rays.h"
+#include "analysis/validate.h"
+#include "apps/frame.h"
+#include "apps/ray_tracing.h"
+#include "builders/ploc.h"
+#include "scene/hard_cases.h"
+#include "scene/input_error.h"
+#include "stages/lockstep_executor.h"
+
+namespace coppice {
+
+namespace {
+
+constexpr std::string_view inside = "from inside", bounced = "bounced";
+
+struct RayBatch {
+  std::string_view kind;
+  std::size_t first, count;
+};
+
+struct BatchedRays {
+  std::vector<Ray> rays;
+  std::vector<RayBatch> batches;
+
+  void add(std::string_view kind, const std::vector<Ray>& more) {
+    batches.push_back({kind, rays.size(), more.size()});
+    rays.insert(rays.end(), more.begin(), more.end());
+  }
+};
+
+void build_in_lockstep(CheckedDevice& device, std::span<const Triangle> triangles, const Options& options,
+                       StabilityCase& result, std::vector<Node>& nodes) {
+  Layout layout(device.device.properties().max_block_bytes);
+  const BuildPlan plan =
+      plan_build(layout, static_cast<std::uint32_t>(triangles.size()), device.build_options(options));
+  LockstepExecutor executor(device.device, layout);
+  executor.upload(plan.triangles, triangles);
+  if (const auto difference = executor.run([&](Chain& chain) { append_build(chain, plan); })) {
+    result.difference = difference->stage + ", " + difference->slot;
+  }
+  const BuildState state = executor.gpu().read(plan.state)[0];
+  result.rounds = state.round_count;
+  result.rounds_bound = plan.rounds_bound;
+  const std::uint64_t node_count = state.active_count == 0 ? 0 : 2 * std::uint64_t{state.active_count} - 1;
+  nodes = executor.gpu().read(Slot<Node>{plan.nodes.place, node_count});
+  result.depth = nodes.empty() ? 0 : nodes[0].height;
+  result.fault = find_fault(nodes, triangles).value_or("");
+  const Bvh independent = build_ploc(triangles, {plan.options.radius, plan.options.morton_bits});
+  result.same_as_builder = std::ranges::equal(nodes, independent.nodes, [](const Node& a, const Node& b) {
+    return std::memcmp(&a, &b, sizeof(Node)) == 0;
+  });
+}
+
+VariantResult trace_variant(RayTracing& tracing, const IntersectionVariant& variant, TraceOptions options,
+                            const BatchedRays& batched, std::span<const Node> nodes,
+                            std::span<const Triangle> triangles) {
+  options.triangle_test = variant.triangle_test;
+  options.box_test = variant.box_test;
+  VariantResult result{&variant, {}, false, ""};
+  const TracedRays traced = tracing.on_device(batched.rays, options);
+  result.error = traced.error;
+  const TracedRays twins = tracing.by_twins(batched.rays, options);
+  result.bits_equal =
+      std::memcmp(traced.hits.data(), twins.hits.data(), twins.hits.size() * sizeof(Hit)) == 0;
+  for (const RayBatch& batch : batched.batches) {
+    const auto rays = std::span(batched.rays).subspan(batch.first, batch.count);
+    const auto hits = std::span(traced.hits).subspan(batch.first, batch.count);
+    RayResult kind{batch.kind, judge_hits(nodes, triangles, rays, hits)};
+    if (batch.kind == inside) kind.leaks = kind.verdicts.rays - kind.verdicts.hits;
+    result.kinds.push_back(kind);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<Triangle> case_triangles(const HardCase& hard_case, std::uint32_t count, std::uint64_t seed,
+                                     float scale) {
+  Scene scene = hard_case.make(count, seed);
+  for (vec3& position : scene.positions) position *= scale;
+  bring_into_range(scene);
+  return scene_arrays(scene).triangles;
+}
+
+vec3 centre_of(const Node& node) { return node.box_min * 0.5f + node.box_max * 0.5f; }
+
+const std::vector<IntersectionVariant>& intersection_variants() {
+  static const std::vector<IntersectionVariant> variants = {
+      {"fast", "fast", TRIANGLE_FAST, BOX_FAST},
+      {"fast", "robust", TRIANGLE_FAST, BOX_ROBUST},
+      {"watertight", "fast", TRIANGLE_WATERTIGHT, BOX_FAST},
+      {"watertight", "robust", TRIANGLE_WATERTIGHT, BOX_ROBUST}};
+  return variants;
+}
+
+RayResult VariantResult::total() const {
+  RayResult sum{"all", {}};
+  for (const RayResult& kind : kinds) {
+    sum.verdicts.rays += kind.verdicts.rays;
+    sum.verdicts.hits += kind.verdicts.hits;
+    sum.verdicts.missed += kind.verdicts.missed;
+    sum.verdicts.missed_at_edges += kind.verdicts.missed_at_edges;
+    sum.verdicts.behind_edges += kind.verdicts.behind_edges;
+    sum.verdicts.false_hits += kind.verdicts.false_hits;
+    sum.verdicts.false_on_degenerate += kind.verdicts.false_on_degenerate;
+    sum.verdicts.other_triangle += kind.verdicts.other_triangle;
+    sum.verdicts.worst_t_ulps = std::max(sum.verdicts.worst_t_ulps, kind.verdicts.worst_t_ulps);
+    sum.verdicts.worst_t_scaled = std::max(sum.verdicts.worst_t_scaled, kind.verdicts.worst_t_scaled);
+    sum.verdicts.worst_uv_ulps = std::max(sum.verdicts.worst_uv_ulps, kind.verdicts.worst_uv_ulps);
+    sum.leaks += kind.leaks;
+  }
+  return sum;
+}
+
+bool StabilityCase::passes() const {
+  const bool built = fault.empty() && difference.empty() && same_as_builder && rounds <= rounds_bound;
+  const RayResult accurate = variants.back().total();
+  const bool bits = std::ranges::all_of(variants, &VariantResult::bits_equal);
+  return built && bits && variants.back().error.empty() && accurate.leaks == 0 &&
+         accurate.verdicts.missed == 0 && accurate.verdicts.false_hits == 0;
+}
+
+StabilityCase examine_case(CheckedDevice& device, std::string_view name, const Options& options,
+                           const StabilityOptions& stability) {
+  const HardCase* const hard_case = find_hard_case(name);
+  if (!hard_case) throw InputError("--cases: unknown hard case '" + std::string(name) + "'");
+  const std::uint32_t asked = std::min(hard_case->default_triangle_count, stability.most_triangles);
+  const std::vector<Triangle> triangles = case_triangles(*hard_case, asked, stability.seed);
+  StabilityCase result;
+  result.scene = name;
+  result.triangles = triangles.size();
+  std::vector<Node> nodes;
+  build_in_lockstep(device, triangles, options, result, nodes);
+
+  BatchedRays batched;
+  for (const RayKindName& kind : ray_kinds()) {
+    batched.add(kind.name, hard_rays(kind.kind, triangles, nodes, stability.rays, stability.seed));
+  }
+  if (hard_case->closed) {
+    batched.add(inside, inside_rays(centre_of(nodes[0]), triangles, stability.rays, stability.seed));
+  }
+  const std::vector<Ray> first = hard_rays(RayKind::RANDOM, triangles, nodes, stability.rays, stability.seed);
+  RayTracing tracing(device, nodes, triangles,
+                     static_cast<std::uint32_t>(batched.rays.size() + first.size()));
+  TraceOptions trace_options = device.trace_options(options);
+  trace_options.brute_force = false;
+  batched.add(bounced, tracing.bounce(first, trace_options, 1));
+  for (const IntersectionVariant& variant : intersection_variants()) {
+    result.variants.push_back(trace_variant(tracing, variant, trace_options, batched, nodes, triangles));
+  }
+  return result;
+}
+
+}  // namespace coppice
