@@ -34,7 +34,8 @@ TraceRay::TraceRay(const Ray& given) : origin(given.origin), given_(given) {
   t_min = std::ldexp(given.t_min, exponent - 1);
   for (int k = 0; k < 3; ++k) {
     const float component = given.direction[k] * scale_;
-    direction[k] = std::fabs(component) < negligible_component ? std::copysign(0.0f, component) : component;
+    const bool counts = std::isnormal(given.direction[k]) && std::fabs(component) >= negligible_component;
+    direction[k] = counts ? component : std::copysign(0.0f, component);
     inverse[k] = direction[k] == 0 ? std::copysign(std::numeric_limits<float>::infinity(), direction[k])
                                    : 1.0f / direction[k];
   }

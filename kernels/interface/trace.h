@@ -20,7 +20,8 @@ const uint BOX_FAST = 0;             // slabs as they come
 const uint BOX_ROBUST = 1;           // slabs widened by the error bound, after Ize 2013
 
 // A ray hits nothing with a NaN, an infinite origin or direction, an empty range (t_min > t_max), or a
-// direction whose components are all zero or denormal. Components below 2^-64 of the largest count as 0.
+// direction whose components are all zero or denormal. Components that are denormal or below 2^-64 of the
+// largest count as 0.
 struct Ray {
   vec3 origin;
   float t_min;

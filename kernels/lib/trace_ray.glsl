@@ -30,6 +30,12 @@ float clear_negligible(float x) {
   return abs(x) < NEGLIGIBLE_COMPONENT ? uintBitsToFloat(floatBitsToUint(x) & 0x80000000u) : x;
 }
 
+// Some devices read denormals as zero, so all do.
+float clear_denormal(float x) {
+  uint bits = floatBitsToUint(x);
+  return (bits & 0x7f800000u) == 0u ? uintBitsToFloat(bits & 0x80000000u) : x;
+}
+
 // False for a ray that hits nothing, see struct Ray.
 bool prepare_ray(Ray ray, out TraceRay r) {
   float size = largest(ray.direction);
@@ -38,7 +44,8 @@ bool prepare_ray(Ray ray, out TraceRay r) {
   if (!is_sound) return false;
   uint exponent = max(floatBitsToUint(size) >> 23, 2u);
   r.scale = uintBitsToFloat((255u - exponent) << 23);
-  precise vec3 direction = ray.direction * r.scale;
+  vec3 normal = vec3(clear_denormal(ray.direction.x), clear_denormal(ray.direction.y), clear_denormal(ray.direction.z));
+  precise vec3 direction = normal * r.scale;
   r.direction = vec3(clear_negligible(direction.x), clear_negligible(direction.y), clear_negligible(direction.z));
   precise float t_min = ray.t_min * uintBitsToFloat((exponent - 1u) << 23);
   r.t_min = t_min;
