@@ -13,27 +13,23 @@ namespace {
 std::uint32_t object_bin_count(std::size_t count) {
   return static_cast<std::uint32_t>(std::min<std::size_t>(4 + count / 8, Bins::LIMIT));
 }
-constexpr std::uint32_t SPATIAL_BIN_LIMIT = 32;
+constexpr std::uint32_t SPATIAL_BIN_LIMIT = 16;
 std::uint32_t spatial_bin_count(std::size_t count) {
-  return static_cast<std::uint32_t>(std::min<std::size_t>(6 + count / 16, SPATIAL_BIN_LIMIT));
+  return static_cast<std::uint32_t>(std::min<std::size_t>(4 + count / 16, SPATIAL_BIN_LIMIT));
 }
 
 constexpr std::size_t CHUNK = 1 << 12;
 
-// What add(sum, references) makes of all references, from `sum`, which is that of none. Chunk by chunk where
-// the node is split together; sums must not depend on the order of their parts.
+// Grows `sum`, that of no references, by those of the node with add(sum, references). Chunk by chunk where
+// the node is split together: sums must not depend on the order of their parts.
 template <class Sum, class Add>
-Sum sum_up(const ReferenceSet& set, Sum sum, const Add& add) {
-  if (!set.together) {
-    add(sum, set.references);
-    return sum;
-  }
+void sum_up(const ReferenceSet& set, Sum& sum, const Add& add) {
+  if (!set.together) return add(sum, set.references);
   std::vector<Sum> sums(chunk_count(set.references.size(), CHUNK), sum);
   set.together->for_each_chunk(set.references.size(), CHUNK, [&](Chunk chunk, std::size_t k) {
     add(sums[k], set.references.subspan(chunk.begin, chunk.count()));
   });
   for (const Sum& part : sums) sum.add(part);
-  return sum;
 }
 
 struct Bounds {
@@ -48,7 +44,9 @@ LaneBox centre_bounds(const ReferenceSet& set, float scale) {
       bounds.box = lane_union(bounds.box, {centre, centre});
     }
   };
-  return sum_up(set, Bounds{}, add).box;
+  Bounds bounds;
+  sum_up(set, bounds, add);
+  return bounds.box;
 }
 
 // Left and right child.
@@ -121,7 +119,7 @@ class SpatialBins {
   }
 
   void add(std::span<const Reference> references, std::span<const Triangle> triangles) {
-    for (const Reference& reference : references) add(reference, triangles[reference.child]);
+    for (const Reference& reference : references) add(reference, triangles);
   }
 
   void add(const SpatialBins& other) {
@@ -141,33 +139,34 @@ class SpatialBins {
   }
 
  private:
-  void add(const Reference& reference, const Triangle& triangle) {
+  void add(const Reference& reference, std::span<const Triangle> triangles) {
     const LaneBox box = lane_box(reference);
     const Integers first = bins_of(box.low), last = bins_of(box.high);
-    ChoppedTriangle chopped(triangle);
     for (int axis = 0; axis < static_cast<int>(AXES); ++axis) {
       ++begins_[first[axis]][axis];
       ++ends_[last[axis]][axis];
-      if (first[axis] == last[axis]) {
-        grow(first[axis], axis, box);
-      } else {
-        chop(chopped, box, axis, first[axis], last[axis]);
+      if (first[axis] == last[axis]) grow(first[axis], axis, box);
+    }
+    const Integers is_chopped = first != last;
+    if ((is_chopped[0] | is_chopped[1] | is_chopped[2]) == 0) return;
+    ChoppedTriangle triangle(triangles[reference.child]);
+    std::array<Floats, 3> points;
+    std::array<Integers, 3> bins;
+    for (int i = 0; i < 3; ++i) {
+      points[i] = smaller(larger(triangle.corners()[i], box.low), box.high);
+      bins[i] = bins_of(points[i]);
+    }
+    for (int axis = 0; axis < static_cast<int>(AXES); ++axis) {
+      if (!is_chopped[axis]) continue;
+      // The part in a bin is the hull of the corners in it and of the cuts at its ends.
+      for (int i = 0; i < 3; ++i) grow(bins[i][axis], axis, {points[i], points[i]});
+      triangle.look_along(axis);
+      for (int bin = first[axis] + 1; bin <= last[axis]; ++bin) {
+        LaneBox cut = triangle.cut(plane_before(bin, axis));
+        cut = {larger(cut.low, box.low), smaller(cut.high, box.high)};
+        grow(bin - 1, axis, cut);
+        grow(bin, axis, cut);
       }
-    }
-  }
-
-  // The part in a bin is the hull of the corners in it and of the cuts at its ends.
-  void chop(ChoppedTriangle& triangle, const LaneBox& box, int axis, int first, int last) {
-    triangle.look_along(axis);
-    for (const Floats& corner : triangle.corners()) {
-      const Floats point = smaller(larger(corner, box.low), box.high);
-      grow(bin_of(point, axis), axis, {point, point});
-    }
-    for (int bin = first + 1; bin <= last; ++bin) {
-      LaneBox cut = triangle.cut(plane_before(bin, axis));
-      cut = {larger(cut.low, box.low), smaller(cut.high, box.high)};
-      grow(bin - 1, axis, cut);
-      grow(bin, axis, cut);
     }
   }
 
@@ -202,7 +201,6 @@ class SpatialBins {
     const Floats bins = smaller((point - low_) * bins_per_length_, splat(bin_count_ - 1));
     return __builtin_convertvector(bins, Integers);
   }
-  int bin_of(Floats point, int axis) const { return bins_of(point)[axis]; }
   float plane_before(int bin, int axis) const {
     return low_[axis] + bin_lengths_[axis] * static_cast<float>(bin);
   }
@@ -223,14 +221,18 @@ LaneBox box_of(const ReferenceSet& set) {
   const auto add = [](Bounds& bounds, std::span<const Reference> references) {
     for (const Reference& reference : references) bounds.box = lane_union(bounds.box, lane_box(reference));
   };
-  return sum_up(set, Bounds{}, add).box;
+  Bounds bounds;
+  sum_up(set, bounds, add);
+  return bounds.box;
 }
 
 std::optional<ObjectSplit> find_object_split(const ReferenceSet& set, float scale) {
   const BinGrid grid(centre_bounds(set, scale), object_bin_count(set.references.size()), scale);
   if (grid.is_flat()) return {};
   const auto add = [&](Bins& bins, std::span<const Reference> references) { bins.add(references, grid); };
-  const std::optional<BinSplit> place = sum_up(set, Bins(grid.bin_count()), add).best_split(scale);
+  Bins bins(grid.bin_count());
+  sum_up(set, bins, add);
+  const std::optional<BinSplit> place = bins.best_split(scale);
   if (!place) return {};
   const auto add_to_side = [&](Children& children, std::span<const Reference> references) {
     for (const Reference& reference : references) {
@@ -240,7 +242,8 @@ std::optional<ObjectSplit> find_object_split(const ReferenceSet& set, float scal
       ++children.counts[side];
     }
   };
-  const Children children = sum_up(set, Children{}, add_to_side);
+  Children children;
+  sum_up(set, children, add_to_side);
   const auto& [left, right] = children.boxes;
   const float cost = half_area(left, scale) * static_cast<float>(children.counts[0]) +
                      half_area(right, scale) * static_cast<float>(children.counts[1]);
@@ -252,7 +255,9 @@ SpatialSplit find_spatial_split(const ReferenceSet& set, std::span<const Triangl
   const auto add = [&](SpatialBins& bins, std::span<const Reference> references) {
     bins.add(references, triangles);
   };
-  return sum_up(set, SpatialBins(box, spatial_bin_count(set.references.size())), add).cheapest_split(scale);
+  SpatialBins bins(box, spatial_bin_count(set.references.size()));
+  sum_up(set, bins, add);
+  return bins.cheapest_split(scale);
 }
 
 }  // namespace coppice
