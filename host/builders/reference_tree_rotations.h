@@ -14,7 +14,7 @@ namespace coppice {
 //
 // `nodes` is a tree of at least one node, root at 0, siblings adjacent, each node before its children; so it
 // is in `rotated`, which has room for as many nodes and is in depth-first order. `scale` is that of
-// lane_box.h, `height_limit` the greatest height that the tree may have, and no less than it has.
+// lane_box.h, `height_limit` the greatest height that the tree may have: at least what it has, at most 255.
 void rotate_tree(std::span<Node> nodes, std::span<Node> rotated, float scale, std::uint32_t height_limit);
 
 }  // namespace coppice
