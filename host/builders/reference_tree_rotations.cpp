@@ -53,7 +53,7 @@ class Rotations {
     if (!is_leaf(left) && !is_leaf(right)) try_cousins(left, right, best);
     if (best.first == best.second) return;
     change_places(node, best);
-    // The places below are in order again after as much as this.
+    // Done twice it is undone.
     if (node.height > height_limit) change_places(node, best);
   }
 
