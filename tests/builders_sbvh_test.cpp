@@ -82,9 +82,34 @@ TEST(BuildSbvh, CutsTheCostOfNeedles) {
   EXPECT_LT(measure_quality(build_sbvh(triangles, {.reference_cap = ample}).nodes).sah, 0.6 * whole);
 }
 
+// A row of short triangles along x, each of which just reaches into the next, so that every plane across x
+// crosses one or two. The last triangle is a long one askew from one end of the row to the other.
+std::vector<Triangle> row_under_a_long_triangle() {
+  std::vector<Triangle> triangles;
+  for (int i = 0; i < 32; ++i) {
+    const vec3 corner(-8 + 0.5f * static_cast<float>(i), -1, -1);
+    triangles.push_back({corner, corner + vec3(0.51f, 2, 0), corner + vec3(0, 2, 2)});
+  }
+  triangles.push_back({vec3(-8, -1, -1), vec3(8, 1, 1), vec3(8, 1, 0.9f)});
+  return triangles;
+}
+
+TEST(BuildSbvh, LeavesATriangleWholeWhereThatIsCheaperThanToSplitIt) {
+  const std::vector<Triangle> triangles = row_under_a_long_triangle();
+  const Bvh bvh = build_sbvh(triangles, {.overlap_threshold = 0.2});
+  std::vector<int> leaves(triangles.size());
+  for (const Node& node : bvh.nodes) {
+    if (node.height == 0) ++leaves[node.child];
+  }
+  EXPECT_GT(leaves[32], 1);
+  for (int i = 0; i < 32; ++i) EXPECT_EQ(leaves[i], 1) << "triangle " << i;
+  expect_no_point_lost(bvh, triangles);
+}
+
 TEST(BuildSbvh, GivesTheSameTreeOnAnyNumberOfThreads) {
   const std::vector<Triangle> triangles = needles(20000, 7);
   const Bvh bvh = build_sbvh(triangles, {.threads = 1});
+  expect_valid_split_tree(bvh, triangles);
   for (const std::uint32_t threads : {2u, 3u, 8u}) {
     const Bvh other = build_sbvh(triangles, {.threads = threads});
     expect_same_nodes(other, bvh);

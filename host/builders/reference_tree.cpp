@@ -1,35 +1,31 @@
 #include "builders/reference_tree.h"
 
-#include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/info.h>
-#include <oneapi/tbb/task_arena.h>
-#include <oneapi/tbb/task_group.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <bit>
 #include <cmath>
 #include <memory>
-#include <optional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include "builders/lane_box.h"
 #include "builders/leaves.h"
+#include "builders/reference_tree_rotations.h"
+#include "builders/subtree.h"
+#include "builders/threads.h"
 
 namespace coppice {
 namespace {
 
-namespace tbb = oneapi::tbb;
-
-// Subtrees of fewer references stay with one thread.
-constexpr std::uint32_t TASK_REFERENCES = 4096;
+// Nodes of more references are split by all threads together, the subtrees below are each built by one.
+constexpr std::size_t SHARED_COUNT = 1 << 14;
 // A link with this bit leads to a leaf.
 constexpr std::uint32_t LEAF_BIT = 1u << 31;
 
 // A node to be split. The places [first, first + capacity) of all arrays belong to its subtree alone.
-struct Subtree {
+struct ReferenceSubtree {
   std::span<const Reference> references;
   std::uint32_t first;
   std::uint32_t capacity;
@@ -55,38 +51,112 @@ double total_extent(std::span<const Reference> references) {
   return sum;
 }
 
-template <class Work>
-void with_threads(std::uint32_t threads, const Work& work) {
-  constexpr std::uint32_t most = 1024;
-  const int usual = tbb::info::default_concurrency();
-  const int count = threads == 0 ? usual : static_cast<int>(std::min(threads, most));
-  // TBB starts no more threads than there are processors unless it is told to.
-  std::optional<tbb::global_control> control;
-  if (count > usual) {
-    control.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(count));
-  }
-  tbb::task_arena(count).execute(work);
-}
+// A node that all threads split together, or the root of a subtree that one thread builds.
+struct Upper {
+  ReferenceSubtree subtree;
+  std::uint32_t left = 0;        // the left child's index; the right one's follows; 0 where one thread builds
+  std::uint32_t leaf_count = 0;  // of the subtree
+  // The node's place, and where those of the nodes below it begin.
+  std::uint32_t node = 0, places = 1;
+};
 
 class ReferenceTree {
  public:
-  ReferenceTree(std::uint32_t capacity, const ReferenceSplitter& splitter)
+  ReferenceTree(std::uint32_t capacity, const ReferenceSplitter& splitter, const Threads& threads)
       : splitter_(splitter),
+        threads_(threads),
         links_(std::make_unique_for_overwrite<std::uint32_t[]>(2 * std::size_t{capacity})) {
     for (auto& references : references_) references = std::make_unique_for_overwrite<Reference[]>(capacity);
   }
 
-  void build(std::span<const Reference> leaves, std::uint32_t capacity) {
-    tasks_.run_and_wait([&] { build_subtree({leaves, 0, capacity, 0, 0, false}); });
+  void split_all(std::span<const Reference> leaves, std::uint32_t capacity) {
+    uppers_.push_back({{leaves, 0, capacity, 0, 0, false}});
+    for (std::uint32_t i = 0; i < uppers_.size(); ++i) {
+      if (uppers_[i].subtree.references.size() <= SHARED_COUNT) {
+        parts_.push_back(i);
+        continue;
+      }
+      const auto children = split(uppers_[i].subtree, &threads_);
+      uppers_[i].left = static_cast<std::uint32_t>(uppers_.size());
+      uppers_.push_back({children[1]});
+      uppers_.push_back({children[0]});
+    }
+    threads_.for_each(parts_.size(), [&](std::size_t k) {
+      uppers_[parts_[k]].leaf_count = split_alone(uppers_[parts_[k]].subtree);
+    });
+    references_[1].reset();
+  }
+
+  // Depth-first, siblings together. A node stands before its children.
+  std::vector<Node> take_nodes(float scale, std::uint32_t rotation_passes) {
+    place_uppers();
+    std::vector<Node> nodes(2 * std::size_t{uppers_[0].leaf_count} - 1);
+    threads_.for_each(parts_.size(), [&](std::size_t k) {
+      const Upper& part = uppers_[parts_[k]];
+      std::vector<Node> tree = linked_nodes(part);
+      std::vector<Node> rotated(rotation_passes > 0 ? tree.size() : 0);
+      for (std::uint32_t pass = 0; pass < rotation_passes; ++pass) {
+        rotate_tree(tree, rotated, scale, REFERENCE_TREE_MAX_HEIGHT - part.subtree.depth);
+        tree.swap(rotated);
+      }
+      for (Node& node : tree) {
+        if (node.height > 0) node.child += part.places - 1;
+      }
+      nodes[part.node] = tree[0];
+      std::copy(tree.begin() + 1, tree.end(), nodes.begin() + part.places);
+    });
+    for (std::size_t i = uppers_.size(); i-- > 0;) {
+      if (uppers_[i].left == 0) continue;
+      Node& node = nodes[uppers_[i].node];
+      node.child = uppers_[i].places;
+      fit_to_children(node, nodes);
+    }
+    return nodes;
   }
 
   bool cap_reached() const { return cap_reached_; }
 
-  // Depth-first, siblings together. A node stands before its children.
-  std::vector<Node> take_nodes() {
-    references_[1].reset();
-    std::vector<Node> nodes(2 * std::size_t{leaf_count_} - 1);
-    std::vector<std::array<std::uint32_t, 2>> stack = {{links_[0], 0}};  // a link's value and its node
+ private:
+  // Splits down to leaves and returns how many these are.
+  std::uint32_t split_alone(const ReferenceSubtree& root) {
+    std::uint32_t leaf_count = 0;
+    std::vector<ReferenceSubtree> stack = {root};
+    while (!stack.empty()) {
+      const ReferenceSubtree subtree = stack.back();
+      stack.pop_back();
+      if (subtree.references.size() > 1) {
+        for (const ReferenceSubtree& child : split(subtree, nullptr)) stack.push_back(child);
+        continue;
+      }
+      references_[0][subtree.first] = subtree.references[0];
+      links_[subtree.link] = LEAF_BIT | subtree.first;
+      ++leaf_count;
+    }
+    return leaf_count;
+  }
+
+  void place_uppers() {
+    for (std::size_t i = uppers_.size(); i-- > 0;) {
+      Upper& upper = uppers_[i];
+      if (upper.left != 0) {
+        upper.leaf_count = uppers_[upper.left].leaf_count + uppers_[upper.left + 1].leaf_count;
+      }
+    }
+    for (const Upper& upper : uppers_) {
+      if (upper.left == 0) continue;
+      Upper &left = uppers_[upper.left], &right = uppers_[upper.left + 1];
+      left.node = upper.places;
+      left.places = upper.places + 2;
+      right.node = upper.places + 1;
+      right.places = upper.places + 2 * left.leaf_count;
+    }
+  }
+
+  // The subtree as a tree of its own.
+  std::vector<Node> linked_nodes(const Upper& part) const {
+    std::vector<Node> nodes(2 * std::size_t{part.leaf_count} - 1);
+    std::vector<std::array<std::uint32_t, 2>> stack = {
+        {links_[part.subtree.link], 0}};  // to a node, its place
     std::uint32_t next = 1;
     while (!stack.empty()) {
       const auto [link, node] = stack.back();
@@ -101,44 +171,13 @@ class ReferenceTree {
       next += 2;
     }
     for (std::size_t i = nodes.size(); i-- > 0;) {
-      if (nodes[i].height > 0) set_from_children(nodes, nodes[i]);
+      if (nodes[i].height > 0) fit_to_children(nodes[i], nodes);
     }
     return nodes;
   }
 
- private:
-  static void set_from_children(std::span<const Node> nodes, Node& node) {
-    const Node& first = nodes[node.child];
-    const Node& second = nodes[node.child + 1];
-    const Aabb box = box_union({first.box_min, first.box_max}, {second.box_min, second.box_max});
-    node = {box.box_min, node.child, box.box_max, 1 + std::max(first.height, second.height)};
-  }
-
-  void build_subtree(const Subtree& root) {
-    std::uint32_t leaf_count = 0;
-    std::vector<Subtree> stack = {root};
-    while (!stack.empty()) {
-      const Subtree subtree = stack.back();
-      stack.pop_back();
-      if (subtree.references.size() == 1) {
-        references_[0][subtree.first] = subtree.references[0];
-        links_[subtree.link] = LEAF_BIT | subtree.first;
-        ++leaf_count;
-        continue;
-      }
-      for (const Subtree& child : split(subtree)) {
-        if (child.references.size() >= TASK_REFERENCES) {
-          tasks_.run([this, child] { build_subtree(child); });
-        } else {
-          stack.push_back(child);
-        }
-      }
-    }
-    leaf_count_ += leaf_count;
-  }
-
   // The right child first: the left one is taken off the stack before it.
-  std::array<Subtree, 2> split(const Subtree& subtree) {
+  std::array<ReferenceSubtree, 2> split(const ReferenceSubtree& subtree, const Threads* together) {
     // Children's references go to the array that their parent's are not in.
     Reference* place = (subtree.depth % 2 == 0 ? references_[0] : references_[1]).get() + subtree.first;
     SplitSides sides(place, place + subtree.capacity);
@@ -146,7 +185,7 @@ class ReferenceTree {
     const bool too_deep =
         subtree.depth + static_cast<std::uint32_t>(std::bit_width(count)) >= REFERENCE_TREE_MAX_HEIGHT;
     if (!subtree.halve && !too_deep) {
-      splitter_.split({subtree.references, subtree.capacity - count}, sides);
+      splitter_.split({subtree.references, subtree.capacity - count, together}, sides);
       if (sides.cap_reached) cap_reached_ = true;
     }
     if (sides.left().empty() || sides.right().empty()) {
@@ -159,7 +198,7 @@ class ReferenceTree {
   }
 
   // The children meet at a place that is between those of no other two siblings: it names their links.
-  std::array<Subtree, 2> children_of(const Subtree& subtree, const SplitSides& sides) {
+  std::array<ReferenceSubtree, 2> children_of(const ReferenceSubtree& subtree, const SplitSides& sides) {
     const auto left_count = static_cast<std::uint32_t>(sides.left().size());
     const auto right_count = static_cast<std::uint32_t>(sides.right().size());
     const std::uint32_t left_capacity =
@@ -181,25 +220,30 @@ class ReferenceTree {
   }
 
   const ReferenceSplitter& splitter_;
+  const Threads& threads_;
   std::array<std::unique_ptr<Reference[]>, 2> references_;
   std::unique_ptr<std::uint32_t[]> links_;  // 2 * middle and 2 * middle + 1; the root's at 0
-  std::atomic<std::uint32_t> leaf_count_ = 0;
+  std::vector<Upper> uppers_;               // breadth-first
+  std::vector<std::uint32_t> parts_;        // those that one thread builds
   std::atomic<bool> cap_reached_ = false;
-  tbb::task_group tasks_;
 };
 
 }  // namespace
 
 Bvh build_reference_tree(std::span<const Triangle> triangles, const ReferenceCap& cap,
-                         const ReferenceSplitter& splitter, std::uint32_t threads) {
+                         const ReferenceSplitter& splitter, std::uint32_t thread_count,
+                         std::uint32_t rotation_passes) {
   Bvh bvh;
-  const std::vector<Node> leaves = make_leaves(triangles);
+  const Threads threads(thread_count);
+  std::vector<Node> leaves = make_leaves(triangles, threads);
   const std::uint32_t capacity = capacity_of(cap, leaves.size());
   bvh.active_count = static_cast<std::uint32_t>(leaves.size());
   if (leaves.empty()) return bvh;
-  ReferenceTree tree(capacity, splitter);
-  with_threads(threads, [&] { tree.build(leaves, capacity); });
-  bvh.nodes = tree.take_nodes();
+  const float scale = centre_scale(bounds_of(leaves, threads));
+  ReferenceTree tree(capacity, splitter, threads);
+  tree.split_all(leaves, capacity);
+  leaves = {};
+  bvh.nodes = tree.take_nodes(scale, rotation_passes);
   bvh.references = (bvh.nodes.size() + 1) / 2;
   bvh.reference_cap_reached = tree.cap_reached();
   return bvh;

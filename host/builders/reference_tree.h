@@ -7,6 +7,8 @@
 
 namespace coppice {
 
+class Threads;
+
 // How many references a tree may have, of which each leaf holds one: at most per_triangle * active triangles
 // + constant, and never more than 2^31 - 1.
 struct ReferenceCap {
@@ -21,6 +23,8 @@ using Reference = Node;
 struct ReferenceSet {
   std::span<const Reference> references;  // at least two
   std::uint32_t spare;                    // how many more of them the subtree may have
+  // The threads that split the node together; none where it is the caller's alone.
+  const Threads* together = nullptr;
 };
 
 // Where a splitter puts the references of both children.
@@ -63,13 +67,17 @@ class ReferenceSplitter {
 // The greatest height of a tree. Near it nodes are split into halves, whatever the splitter says.
 inline constexpr std::uint32_t REFERENCE_TREE_MAX_HEIGHT = 200;
 
-// Splits the leaves of all active triangles top-down until each node holds one reference, subtrees in
-// parallel on that many threads (0: as many as the machine runs at once). Each subtree has a share of the
-// spare references that depends on nothing outside of the way to it, so the tree is a pure function of the
-// triangles, the cap and the splitter, for every number of threads. Internal boxes are the unions of their
-// children's; nodes are in depth-first order. Throws std::invalid_argument for a cap out of range and
-// std::length_error for more than 2^31 - 1 triangles.
+// Splits the leaves of all active triangles top-down until each node holds one reference: nodes of many
+// references one after the other by all threads together (0: as many as the machine runs at once), the
+// subtrees below them at once. Then come `rotation_passes` passes of tree rotations
+// (reference_tree_rotations.h) over each of these subtrees.
+//
+// Each subtree has a share of the spare references that depends on nothing outside of the way to it, so the
+// tree is a pure function of the triangles, the cap, the splitter and the passes, for every number of
+// threads. Internal boxes are the unions of their children's; nodes are in depth-first order. Throws
+// std::invalid_argument for a cap out of range and std::length_error for more than 2^31 - 1 triangles.
 Bvh build_reference_tree(std::span<const Triangle> triangles, const ReferenceCap& cap,
-                         const ReferenceSplitter& splitter, std::uint32_t threads);
+                         const ReferenceSplitter& splitter, std::uint32_t thread_count,
+                         std::uint32_t rotation_passes = 0);
 
 }  // namespace coppice

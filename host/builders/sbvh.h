@@ -22,11 +22,15 @@ struct SbvhConfig {
 // - where the children of that one overlap by more than the threshold, a binned spatial split: references
 //   chopped by planes across the node's box, on all three axes. A reference that the best plane crosses
 //   stands on both sides, unless it is cheaper to leave it whole on one of them (reference unsplitting).
-// Leaves hold one reference each. Where all midpoints coincide and no spatial split is cheaper, the first
-// half of the references, in their order, goes left.
+// Leaves hold one reference each. Of two references each becomes a leaf: the cost above leaves out the node
+// that a third one adds, and so splits pairs that it had better not. Where all midpoints coincide and no
+// spatial split is cheaper, the first half of the references, in their order, goes left.
+//
+// Then tree rotations (reference_tree_rotations.h) rearrange the subtrees of at most 2^14 references.
 //
 // Triangles are not split where the subtree has fewer spare references left than the plane crosses
-// (ReferenceCap); `reference_cap_reached` tells that such a split would have been cheaper.
+// (ReferenceCap); `reference_cap_reached` tells that such a split would have been cheaper. A subtree without
+// any gets object splits only.
 //
 // The tree is a pure function of triangles and config, whatever the number of threads. Throws
 // std::invalid_argument for a config out of range, std::length_error for more than 2^31 - 1 triangles.

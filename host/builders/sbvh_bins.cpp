@@ -2,241 +2,262 @@
 
 #include <algorithm>
 #include <array>
-#include <utility>
+#include <vector>
 
-#include "builders/lanes.h"
+#include "builders/threads.h"
 
 namespace coppice {
 namespace {
 
-double twice_midpoint(const Reference& reference, int axis) {
-  return double{reference.box_min[axis]} + reference.box_max[axis];
-}
-
-// The box of the references, or their parts, in a bin, and how many references begin and end in it: those
-// that begin before a place between bins are on its left, those that end behind it on its right.
-struct Bin {
-  GrowingBox box;
-  std::uint32_t begins = 0;
-  std::uint32_t ends = 0;
-};
-
 // Small nodes are the many, and there a few bins find the same splits.
-std::uint32_t bin_count_for(std::size_t count) {
-  return static_cast<std::uint32_t>(std::min<std::size_t>(4 + count / 8, SBVH_MAX_BINS));
+std::uint32_t object_bin_count(std::size_t count) {
+  return static_cast<std::uint32_t>(std::min<std::size_t>(4 + count / 8, Bins::LIMIT));
+}
+constexpr std::uint32_t SPATIAL_BIN_LIMIT = 16;
+std::uint32_t spatial_bin_count(std::size_t count) {
+  return static_cast<std::uint32_t>(std::min<std::size_t>(4 + count / 16, SPATIAL_BIN_LIMIT));
 }
 
-std::uint32_t bin_of(double offset, double bins_per_length, std::uint32_t bin_count) {
-  return std::min(static_cast<std::uint32_t>(offset * bins_per_length), bin_count - 1);
+constexpr std::size_t CHUNK = 1 << 12;
+
+// Grows `sum`, that of no references, by those of the node with add(sum, references). Chunk by chunk where
+// the node is split together: sums must not depend on the order of their parts.
+template <class Sum, class Add>
+void sum_up(const ReferenceSet& set, Sum& sum, const Add& add) {
+  if (!set.together) return add(sum, set.references);
+  std::vector<Sum> sums(chunk_count(set.references.size(), CHUNK), sum);
+  set.together->for_each_chunk(set.references.size(), CHUNK, [&](Chunk chunk, std::size_t k) {
+    add(sums[k], set.references.subspan(chunk.begin, chunk.count()));
+  });
+  for (const Sum& part : sums) sum.add(part);
 }
 
-struct BinnedSplit {
-  double cost = std::numeric_limits<double>::infinity();
-  std::uint32_t first_right_bin = 0;
-  GrowingBox left, right;
+struct Bounds {
+  LaneBox box = EMPTY_LANE_BOX;
+  void add(const Bounds& other) { box = lane_union(box, other.box); }
 };
 
-// The cheapest place between bins that has something on both sides.
-BinnedSplit cheapest_split(std::span<const Bin> bins) {
-  std::array<GrowingBox, SBVH_MAX_BINS> right_boxes;
-  std::array<std::uint32_t, SBVH_MAX_BINS> right_counts;
-  GrowingBox right;
-  std::uint32_t right_count = 0;
-  for (std::size_t i = bins.size(); i-- > 1;) {
-    right.grow(bins[i].box);
-    right_count += bins[i].ends;
-    right_boxes[i] = right;
-    right_counts[i] = right_count;
-  }
-  BinnedSplit best;
-  GrowingBox left;
-  std::uint32_t left_count = 0;
-  for (std::uint32_t i = 1; i < bins.size(); ++i) {
-    left.grow(bins[i - 1].box);
-    left_count += bins[i - 1].begins;
-    if (left_count == 0 || right_counts[i] == 0) continue;
-    const double cost = left.half_area() * left_count + right_boxes[i].half_area() * right_counts[i];
-    if (cost < best.cost) best = {cost, i, left, right_boxes[i]};
-  }
-  return best;
+LaneBox centre_bounds(const ReferenceSet& set, float scale) {
+  const auto add = [&](Bounds& bounds, std::span<const Reference> references) {
+    for (const Reference& reference : references) {
+      const Floats centre = scaled_centre(lane_box(reference), scale);
+      bounds.box = lane_union(bounds.box, {centre, centre});
+    }
+  };
+  Bounds bounds;
+  sum_up(set, bounds, add);
+  return bounds.box;
 }
+
+// Left and right child.
+struct Children {
+  std::array<LaneBox, 2> boxes = {EMPTY_LANE_BOX, EMPTY_LANE_BOX};
+  std::array<std::uint32_t, 2> counts = {};
+
+  void add(const Children& other) {
+    for (int side = 0; side < 2; ++side) {
+      boxes[side] = lane_union(boxes[side], other.boxes[side]);
+      counts[side] += other.counts[side];
+    }
+  }
+};
 
 Floats lanes_of(const vec3& point) { return Floats{point.x, point.y, point.z, 0.0f}; }
-vec3 point_of(Floats lanes) { return {lanes[0], lanes[1], lanes[2]}; }
+Floats splat(float value) { return Floats{} + value; }
 
-// The box of a part of a triangle, or of several; empty at first.
-struct LanePart {
-  Floats box_min = Floats{} + std::numeric_limits<float>::infinity();
-  Floats box_max = Floats{} - std::numeric_limits<float>::infinity();
-
-  // A coordinate that is not a number, where an edge is too long for float, is read over.
-  void grow(Floats low, Floats high) {
-    box_min = smaller(low, box_min);
-    box_max = larger(high, box_max);
-  }
-  void grow(Floats point) { grow(point, point); }
-};
-
-// A triangle with its corners in order along an axis.
+// A triangle's edges, and where they run along one axis: an edge in each lane.
 class ChoppedTriangle {
  public:
-  ChoppedTriangle(const Triangle& triangle, int axis)
-      : axis_(axis), corners_{lanes_of(triangle.a), lanes_of(triangle.b), lanes_of(triangle.c)} {
-    order(0, 1);
-    order(1, 2);
-    order(0, 1);
-    long_edge_ = edge(0, 2);
-    short_edges_[0] = edge(0, 1);
-    short_edges_[1] = edge(1, 2);
+  explicit ChoppedTriangle(const Triangle& triangle)
+      : corners_{lanes_of(triangle.a), lanes_of(triangle.b), lanes_of(triangle.c)},
+        edges_{corners_[1] - corners_[0], corners_[2] - corners_[1], corners_[0] - corners_[2]} {}
+
+  const std::array<Floats, 3>& corners() const { return corners_; }
+
+  void look_along(int axis) {
+    axis_ = axis;
+    from_ = Floats{corners_[0][axis], corners_[1][axis], corners_[2][axis], 0.0f};
+    to_ = __builtin_shufflevector(from_, from_, 1, 2, 0, 3);
+    per_length_ = 1.0f / (to_ - from_);
   }
 
-  // The part up to a plane that lies beyond all those before.
-  LanePart part_up_to(float plane) {
-    LanePart part = cut_;
-    add_corners_up_to(plane, part);
-    cut_ = {};
-    if (next_corner_ > 0 && next_corner_ < 3) {
-      cut_.grow(point_on(long_edge_, 0, plane));
-      cut_.grow(point_on(short_edges_[next_corner_ - 1], next_corner_ - 1, plane));
+  // The box of the triangle in a plane; empty where no edge crosses it.
+  LaneBox cut(float plane) const {
+    const Floats along = (plane - from_) * per_length_;
+    const Integers crosses = (from_ < plane) ^ (to_ < plane);
+    LaneBox box = EMPTY_LANE_BOX;
+    for (int edge = 0; edge < 3; ++edge) {
+      // A coordinate that is not a number, where an edge is too long for float, is read over.
+      const Floats point = corners_[edge] + edges_[edge] * splat(along[edge]);
+      const Integers is_cut = Integers{} + crosses[edge];
+      box.low = smaller(is_cut ? point : EMPTY_LANE_BOX.low, box.low);
+      box.high = larger(is_cut ? point : EMPTY_LANE_BOX.high, box.high);
     }
-    part.grow(cut_.box_min, cut_.box_max);
-    return part;
-  }
-
-  // What lies beyond the last plane.
-  LanePart rest() {
-    LanePart part = cut_;
-    add_corners_up_to(std::numeric_limits<float>::infinity(), part);
-    return part;
+    box.low[axis_] = box.high[axis_] = plane;
+    return box;
   }
 
  private:
-  void order(int a, int b) {
-    if (corners_[b][axis_] < corners_[a][axis_]) std::swap(corners_[a], corners_[b]);
-  }
-  // How the point moves for each unit along the axis.
-  Floats edge(int from, int to) const {
-    const Floats along = corners_[to] - corners_[from];
-    return along / along[axis_];
-  }
-  Floats point_on(Floats edge, int from, float plane) const {
-    Floats point = corners_[from] + edge * (plane - corners_[from][axis_]);
-    point[axis_] = plane;
-    return point;
-  }
-  void add_corners_up_to(float plane, LanePart& part) {
-    while (next_corner_ < 3 && corners_[next_corner_][axis_] <= plane) part.grow(corners_[next_corner_++]);
-  }
-
-  int axis_;
-  Floats corners_[3];
-  Floats long_edge_, short_edges_[2];
-  int next_corner_ = 0;
-  LanePart cut_;  // the triangle in the last plane
+  std::array<Floats, 3> corners_, edges_;
+  int axis_ = 0;
+  Floats from_ = {}, to_ = {}, per_length_ = {};
 };
 
-// Chops references along one axis of a node's box. All in float and without care for rounding: parts only
+// Chops references along all axes of a node's box. All in float and without care for rounding: parts only
 // serve to compare planes, and clip_at_plane makes those that stay.
 class SpatialBins {
  public:
-  SpatialBins(const GrowingBox& box, int axis, std::uint32_t bin_count)
-      : axis_(axis), bin_count_(bin_count), low_(box.box_min[axis]) {
-    const double length = box.box_max[axis] - low_;
-    bins_per_length_ = bin_count / length;
-    for (std::uint32_t i = 0; i < bin_count; ++i)
-      planes_[i] = static_cast<float>(low_ + length * i / bin_count);
-  }
-
-  void add(const Reference& reference, const Triangle& triangle) {
-    const std::uint32_t first = bin_of(reference.box_min[axis_] - low_, bins_per_length_, bin_count_);
-    const std::uint32_t last = bin_of(reference.box_max[axis_] - low_, bins_per_length_, bin_count_);
-    ++begins_[first];
-    ++ends_[last];
-    const Floats low = lanes_of(reference.box_min), high = lanes_of(reference.box_max);
-    if (first == last) return parts_[first].grow(low, high);
-    ChoppedTriangle chopped(triangle, axis_);
-    for (std::uint32_t i = first; i <= last; ++i) {
-      const LanePart part = i < last ? chopped.part_up_to(planes_[i + 1]) : chopped.rest();
-      parts_[i].grow(larger(part.box_min, low), smaller(part.box_max, high));
+  SpatialBins(const LaneBox& box, std::uint32_t bin_count)
+      : bin_count_(bin_count), low_(box.low), bin_lengths_((box.high - box.low) / splat(bin_count)) {
+    const Floats per_length = 1.0f / bin_lengths_;
+    const Integers is_usable = (per_length > 0.0f) & (per_length < splat(std::numeric_limits<float>::max()));
+    bins_per_length_ = is_usable ? per_length : Floats{};
+    for (std::uint32_t bin = 0; bin < bin_count; ++bin) {
+      boxes_[bin].fill(EMPTY_LANE_BOX);
+      begins_[bin] = ends_[bin] = Integers{};
     }
   }
 
-  SpatialSplit split() const {
-    std::array<Bin, SBVH_MAX_BINS> bins;
-    for (std::uint32_t i = 0; i < bin_count_; ++i) {
-      bins[i] = {{point_of(parts_[i].box_min), point_of(parts_[i].box_max)}, begins_[i], ends_[i]};
+  void add(std::span<const Reference> references, std::span<const Triangle> triangles) {
+    for (const Reference& reference : references) add(reference, triangles);
+  }
+
+  void add(const SpatialBins& other) {
+    for (std::uint32_t bin = 0; bin < bin_count_; ++bin) {
+      for (std::size_t axis = 0; axis < AXES; ++axis) grow(bin, axis, other.boxes_[bin][axis]);
+      begins_[bin] += other.begins_[bin];
+      ends_[bin] += other.ends_[bin];
     }
-    const BinnedSplit best = cheapest_split(std::span(bins).first(bin_count_));
-    return {best.cost, axis_, planes_[best.first_right_bin], best.left, best.right};
+  }
+
+  SpatialSplit cheapest_split(float scale) const {
+    SpatialSplit best;
+    for (int axis = 0; axis < static_cast<int>(AXES); ++axis) {
+      if (bins_per_length_[axis] > 0.0f) sweep(axis, scale, best);
+    }
+    return best;
   }
 
  private:
-  int axis_;
+  void add(const Reference& reference, std::span<const Triangle> triangles) {
+    const LaneBox box = lane_box(reference);
+    const Integers first = bins_of(box.low), last = bins_of(box.high);
+    for (int axis = 0; axis < static_cast<int>(AXES); ++axis) {
+      ++begins_[first[axis]][axis];
+      ++ends_[last[axis]][axis];
+      if (first[axis] == last[axis]) grow(first[axis], axis, box);
+    }
+    const Integers is_chopped = first != last;
+    if ((is_chopped[0] | is_chopped[1] | is_chopped[2]) == 0) return;
+    ChoppedTriangle triangle(triangles[reference.child]);
+    std::array<Floats, 3> points;
+    std::array<Integers, 3> bins;
+    for (int i = 0; i < 3; ++i) {
+      points[i] = smaller(larger(triangle.corners()[i], box.low), box.high);
+      bins[i] = bins_of(points[i]);
+    }
+    for (int axis = 0; axis < static_cast<int>(AXES); ++axis) {
+      if (!is_chopped[axis]) continue;
+      // The part in a bin is the hull of the corners in it and of the cuts at its ends.
+      for (int i = 0; i < 3; ++i) grow(bins[i][axis], axis, {points[i], points[i]});
+      triangle.look_along(axis);
+      for (int bin = first[axis] + 1; bin <= last[axis]; ++bin) {
+        LaneBox cut = triangle.cut(plane_before(bin, axis));
+        cut = {larger(cut.low, box.low), smaller(cut.high, box.high)};
+        grow(bin - 1, axis, cut);
+        grow(bin, axis, cut);
+      }
+    }
+  }
+
+  void sweep(int axis, float scale, SpatialSplit& best) const {
+    std::array<LaneBox, SPATIAL_BIN_LIMIT> right_boxes;
+    std::array<float, SPATIAL_BIN_LIMIT> right_costs;
+    LaneBox box = EMPTY_LANE_BOX;
+    std::int32_t count = 0;
+    for (std::uint32_t bin = bin_count_; bin-- > 1;) {
+      box = lane_union(box, boxes_[bin][axis]);
+      count += ends_[bin][axis];
+      right_boxes[bin] = box;
+      right_costs[bin] = count > 0 ? half_area(box, scale) * static_cast<float>(count)
+                                   : std::numeric_limits<float>::infinity();
+    }
+    box = EMPTY_LANE_BOX;
+    count = 0;
+    for (std::uint32_t bin = 1; bin < bin_count_; ++bin) {
+      box = lane_union(box, boxes_[bin - 1][axis]);
+      count += begins_[bin - 1][axis];
+      if (count == 0) continue;
+      // Infinite, or not a number, for an empty box.
+      const float cost = half_area(box, scale) * static_cast<float>(count) + right_costs[bin];
+      if (cost < best.cost) {
+        best = {cost, axis, plane_before(static_cast<int>(bin), axis), box, right_boxes[bin]};
+      }
+    }
+  }
+
+  Integers bins_of(Floats point) const {
+    // Not a number only where lengths overflow: that comes to the last bin.
+    const Floats bins = smaller((point - low_) * bins_per_length_, splat(bin_count_ - 1));
+    return __builtin_convertvector(bins, Integers);
+  }
+  float plane_before(int bin, int axis) const {
+    return low_[axis] + bin_lengths_[axis] * static_cast<float>(bin);
+  }
+  void grow(std::uint32_t bin, std::size_t axis, const LaneBox& box) {
+    boxes_[bin][axis] = lane_union(boxes_[bin][axis], box);
+  }
+
   std::uint32_t bin_count_;
-  double low_, bins_per_length_;
-  std::array<float, SBVH_MAX_BINS> planes_;  // where each bin begins
-  std::array<LanePart, SBVH_MAX_BINS> parts_;
-  std::array<std::uint32_t, SBVH_MAX_BINS> begins_{}, ends_{};
+  Floats low_, bin_lengths_;
+  Floats bins_per_length_;  // 0 along axes on which the box is flat, or too long
+  std::array<std::array<LaneBox, AXES>, SPATIAL_BIN_LIMIT> boxes_;
+  std::array<Integers, SPATIAL_BIN_LIMIT> begins_, ends_;  // how many references, an axis in each lane
 };
 
 }  // namespace
 
-NodeBounds::NodeBounds(std::span<const Reference> references) {
-  for (int axis = 0; axis < 3; ++axis) low[axis] = high[axis] = twice_midpoint(references[0], axis);
-  for (const Reference& reference : references) {
-    box.grow(reference);
-    for (int axis = 0; axis < 3; ++axis) {
-      const double midpoint = twice_midpoint(reference, axis);
-      low[axis] = midpoint < low[axis] ? midpoint : low[axis];
-      high[axis] = midpoint > high[axis] ? midpoint : high[axis];
-    }
-  }
+LaneBox box_of(const ReferenceSet& set) {
+  const auto add = [](Bounds& bounds, std::span<const Reference> references) {
+    for (const Reference& reference : references) bounds.box = lane_union(bounds.box, lane_box(reference));
+  };
+  Bounds bounds;
+  sum_up(set, bounds, add);
+  return bounds.box;
 }
 
-bool ObjectSplit::goes_left(const Reference& reference) const {
-  return bin_of(twice_midpoint(reference, axis) - low, bins_per_length, bin_count) < first_right_bin;
+std::optional<ObjectSplit> find_object_split(const ReferenceSet& set, float scale) {
+  const BinGrid grid(centre_bounds(set, scale), object_bin_count(set.references.size()), scale);
+  if (grid.is_flat()) return {};
+  const auto add = [&](Bins& bins, std::span<const Reference> references) { bins.add(references, grid); };
+  Bins bins(grid.bin_count());
+  sum_up(set, bins, add);
+  const std::optional<BinSplit> place = bins.best_split(scale);
+  if (!place) return {};
+  const auto add_to_side = [&](Children& children, std::span<const Reference> references) {
+    for (const Reference& reference : references) {
+      const LaneBox box = lane_box(reference);
+      const bool side = grid.bins_of(box)[place->axis] >= place->first_bin;
+      children.boxes[side] = lane_union(children.boxes[side], box);
+      ++children.counts[side];
+    }
+  };
+  Children children;
+  sum_up(set, children, add_to_side);
+  const auto& [left, right] = children.boxes;
+  const float cost = half_area(left, scale) * static_cast<float>(children.counts[0]) +
+                     half_area(right, scale) * static_cast<float>(children.counts[1]);
+  return ObjectSplit{grid, *place, cost, left, right};
 }
 
-ObjectSplit find_object_split(std::span<const Reference> references, const NodeBounds& bounds) {
-  const std::uint32_t bin_count = bin_count_for(references.size());
-  std::array<std::array<Bin, SBVH_MAX_BINS>, 3> bins;
-  double bins_per_length[3];
-  for (int axis = 0; axis < 3; ++axis) {
-    const double length = bounds.high[axis] - bounds.low[axis];
-    bins_per_length[axis] = length > 0.0 ? bin_count / length : 0.0;
-  }
-  for (const Reference& reference : references) {
-    for (int axis = 0; axis < 3; ++axis) {
-      const double offset = twice_midpoint(reference, axis) - bounds.low[axis];
-      Bin& bin = bins[axis][bin_of(offset, bins_per_length[axis], bin_count)];
-      bin.box.grow(reference);
-      ++bin.begins;
-      ++bin.ends;
-    }
-  }
-  ObjectSplit split;
-  for (int axis = 0; axis < 3; ++axis) {
-    const BinnedSplit best = cheapest_split(std::span(bins[axis]).first(bin_count));
-    if (best.cost < split.cost) {
-      split = {best.cost, axis,      best.first_right_bin, bounds.low[axis], bins_per_length[axis], bin_count,
-               best.left, best.right};
-    }
-  }
-  return split;
-}
-
-SpatialSplit find_spatial_split(std::span<const Reference> references, std::span<const Triangle> triangles,
-                                const GrowingBox& box) {
-  const std::uint32_t bin_count = bin_count_for(references.size());
-  SpatialSplit split;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!(box.box_min[axis] < box.box_max[axis])) continue;
-    SpatialBins bins(box, axis, bin_count);
-    for (const Reference& reference : references) bins.add(reference, triangles[reference.child]);
-    const SpatialSplit best = bins.split();
-    if (best.cost < split.cost) split = best;
-  }
-  return split;
+SpatialSplit find_spatial_split(const ReferenceSet& set, std::span<const Triangle> triangles,
+                                const LaneBox& box, float scale) {
+  const auto add = [&](SpatialBins& bins, std::span<const Reference> references) {
+    bins.add(references, triangles);
+  };
+  SpatialBins bins(box, spatial_bin_count(set.references.size()));
+  sum_up(set, bins, add);
+  return bins.cheapest_split(scale);
 }
 
 }  // namespace coppice

@@ -2,41 +2,35 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 
-#include "builders/clip.h"
+#include "builders/lane_box.h"
 #include "builders/reference_tree.h"
+#include "builders/sah_bins.h"
 
 namespace coppice {
 
-// The bounds of a node's references, and of their midpoints.
-struct NodeBounds {
-  GrowingBox box;
-  double low[3], high[3];  // of the midpoints times two: in double, which no box of floats overflows
+// Costs are A(left) N_left + A(right) N_right, A being half of the surface area in the units of lane_box.h.
 
-  explicit NodeBounds(std::span<const Reference> references);
-};
-
-inline constexpr std::uint32_t SBVH_MAX_BINS = 32;
-
-// Costs are A(left) N_left + A(right) N_right, A being half of the surface area.
+// Both children of an object split, which tells references apart by the bins of their midpoints.
 struct ObjectSplit {
-  double cost = std::numeric_limits<double>::infinity();  // infinite: all midpoints coincide
-  int axis = 0;
-  std::uint32_t first_right_bin = 0;
-  double low = 0, bins_per_length = 0;
-  std::uint32_t bin_count = 0;
-  GrowingBox left, right;
+  BinGrid grid;
+  BinSplit place;
+  float cost;
+  LaneBox left, right;
 
-  bool goes_left(const Reference& reference) const;
+  bool goes_left(const Reference& reference) const {
+    return grid.bins_of(lane_box(reference))[place.axis] < place.first_bin;
+  }
 };
 
 // A reference that is on neither side is crossed by the plane.
 struct SpatialSplit {
-  double cost = std::numeric_limits<double>::infinity();  // infinite: no plane has references on both sides
+  float cost = std::numeric_limits<float>::infinity();  // infinite: no plane has references on both sides
   int axis = 0;
   float plane = 0;
-  GrowingBox left, right;  // around the parts on either side
+  LaneBox left = EMPTY_LANE_BOX, right = EMPTY_LANE_BOX;  // around the parts on either side
 
   bool is_left(const Reference& reference) const { return reference.box_max[axis] <= plane; }
   bool is_right(const Reference& reference) const {
@@ -44,11 +38,15 @@ struct SpatialSplit {
   }
 };
 
-// The cheapest split between bins of midpoints, over all axes.
-ObjectSplit find_object_split(std::span<const Reference> references, const NodeBounds& bounds);
+// The box of a node's references.
+LaneBox box_of(const ReferenceSet& set);
+
+// The cheapest split between bins of midpoints, over all axes; none where all midpoints coincide.
+std::optional<ObjectSplit> find_object_split(const ReferenceSet& set, float scale);
 
 // The cheapest split at a plane between bins of space, over all axes, with all that it crosses on both sides.
-SpatialSplit find_spatial_split(std::span<const Reference> references, std::span<const Triangle> triangles,
-                                const GrowingBox& box);
+// `box` is that of the references.
+SpatialSplit find_spatial_split(const ReferenceSet& set, std::span<const Triangle> triangles,
+                                const LaneBox& box, float scale);
 
 }  // namespace coppice
