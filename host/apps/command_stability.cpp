@@ -28,7 +28,8 @@ Json to_json(const RayResult& result) {
           {"other_triangle", verdicts.other_triangle},
           {"worst_t_ulps", verdicts.worst_t_ulps},
           {"worst_t_scaled", verdicts.worst_t_scaled},
-          {"worst_uv_ulps", verdicts.worst_uv_ulps}};
+          {"worst_uv_ulps", verdicts.worst_uv_ulps},
+          {"example", result.example}};
 }
 
 Json to_json(const VariantResult& result) {
@@ -94,6 +95,10 @@ void print_case(const StabilityCase& result) {
                 static_cast<Count>(verdicts.false_hits), verdicts.worst_t_ulps, verdicts.worst_uv_ulps,
                 variant.bits_equal ? "same" : "DIFF");
     if (!variant.error.empty()) std::printf("  %s\n", variant.error.c_str());
+  }
+  for (const RayResult& kind : result.variants.back().kinds) {
+    if (!kind.example.empty())
+      std::printf("  %s: %s\n", std::string(kind.kind).c_str(), kind.example.c_str());
   }
   if (!result.fault.empty()) std::printf("  %s\n", result.fault.c_str());
   if (!result.difference.empty()) std::printf("  first difference: %s\n", result.difference.c_str());

@@ -55,6 +55,26 @@ void build_in_lockstep(CheckedDevice& device, std::span<const Triangle> triangle
   });
 }
 
+std::string describe(const Ray& ray, const Hit& hit, std::string_view what) {
+  char text[512];
+  const vec3 &o = ray.origin, &d = ray.direction;
+  std::snprintf(
+      text, sizeof text,
+      "origin %.9g %.9g %.9g, direction %.9g %.9g %.9g, t %.9g to %.9g: triangle %d at t %.9g: %.*s", o.x,
+      o.y, o.z, d.x, d.y, d.z, ray.t_min, ray.t_max, static_cast<int>(hit.triangle), hit.t,
+      static_cast<int>(what.size()), what.data());
+  return text;
+}
+
+std::string example_of(const HitVerdicts& verdicts, std::span<const Triangle> triangles,
+                       std::span<const Ray> rays, std::span<const Hit> hits) {
+  if (const std::uint64_t i = verdicts.example_false; i != HitVerdicts::NO_RAY) {
+    return describe(rays[i], hits[i], why_false(triangles, rays[i], hits[i]));
+  }
+  const std::uint64_t i = verdicts.example_missed;
+  return i == HitVerdicts::NO_RAY ? "" : describe(rays[i], hits[i], "a closer hit is missed");
+}
+
 VariantResult trace_variant(RayTracing& tracing, const IntersectionVariant& variant, TraceOptions options,
                             const BatchedRays& batched, std::span<const Node> nodes,
                             std::span<const Triangle> triangles) {
@@ -70,6 +90,7 @@ VariantResult trace_variant(RayTracing& tracing, const IntersectionVariant& vari
     const auto rays = std::span(batched.rays).subspan(batch.first, batch.count);
     const auto hits = std::span(traced.hits).subspan(batch.first, batch.count);
     RayResult kind{batch.kind, judge_hits(nodes, triangles, rays, hits)};
+    kind.example = example_of(kind.verdicts, triangles, rays, hits);
     if (batch.kind == inside) kind.leaks = kind.verdicts.rays - kind.verdicts.hits;
     result.kinds.push_back(kind);
   }

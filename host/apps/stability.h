@@ -22,8 +22,9 @@ const std::vector<IntersectionVariant>& intersection_variants();
 // What one kind of rays found with one variant.
 struct RayResult {
   std::string_view kind;
-  HitVerdicts verdicts;
+  HitVerdicts verdicts{};
   std::uint64_t leaks = 0;  // misses of rays from inside of a closed mesh
+  std::string example{};    // of a false hit or a missed ray, in full precision
 };
 
 struct VariantResult {

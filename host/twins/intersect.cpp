@@ -42,11 +42,26 @@ Corner sheared(const TraceRay& ray, const vec3& position) {
           from_origin[(ray.axis + 2) % 3] - ray.shear[1] * z, z};
 }
 
-// On which side of the edge from p to q the ray passes. The sign is exact.
-float edge_function(const Corner& p, const Corner& q) {
-  const Unrounded first = exact_product(q.x, p.y), second = exact_product(q.y, p.x);
-  if (first.value != second.value) return first.value - second.value;
-  return first.rest - second.rest;
+// On which side of each edge, bc, ca and ab, the ray passes.
+struct Sides {
+  float bc, ca, ab;
+
+  float sum() const { return bc + ca + ab; }
+  bool any_zero() const { return bc == 0 || ca == 0 || ab == 0; }
+  bool agree() const { return !((bc < 0 || ca < 0 || ab < 0) && (bc > 0 || ca > 0 || ab > 0)); }
+};
+
+float plain_difference(float a, float b, float c, float d) { return a * b - c * d; }
+
+// As good as rounded once.
+float careful_difference(float a, float b, float c, float d) {
+  const Unrounded first = exact_product(a, b), second = exact_product(c, d);
+  return (first.value - second.value) + (first.rest - second.rest);
+}
+
+template <class Difference>
+Sides sides_of(const Corner& a, const Corner& b, const Corner& c, Difference difference) {
+  return {difference(c.x, b.y, c.y, b.x), difference(a.x, c.y, a.y, c.x), difference(b.x, a.y, b.y, a.x)};
 }
 
 void meet_watertight(const TraceRay& ray, const Triangle& triangle, uint index, Hit& hit) {
@@ -65,14 +80,14 @@ void meet_watertight(const TraceRay& ray, const Triangle& triangle, uint index, 
     corner.y *= scale;
   }
   const auto& [a, b, c] = corners;
-  const float beside_bc = edge_function(b, c), beside_ca = edge_function(c, a),
-              beside_ab = edge_function(a, b);
-  const bool left = beside_bc < 0 || beside_ca < 0 || beside_ab < 0;
-  const bool right = beside_bc > 0 || beside_ca > 0 || beside_ab > 0;
-  const float sum = beside_bc + beside_ca + beside_ab;
-  if (left == right || sum == 0) return;
-  const float depth = (beside_bc * a.z + beside_ca * b.z + beside_ab * c.z) / sum;
-  keep_closer(ray, {depth * ray.stretch, index, beside_ca / sum, beside_ab / sum}, hit);
+  Sides sides = sides_of(a, b, c, plain_difference);
+  if (!sides.agree()) return;
+  // Zeroes may be lost differences, and small ones are mostly rounding.
+  if (sides.any_zero() || std::fabs(sides.sum()) < 0x1p-8f) sides = sides_of(a, b, c, careful_difference);
+  const float sum = sides.sum();
+  if (!sides.agree() || sum == 0) return;
+  const float depth = (sides.bc * a.z + sides.ca * b.z + sides.ab * c.z) / sum;
+  keep_closer(ray, {depth * ray.stretch, index, sides.ca / sum, sides.ab / sum}, hit);
 }
 
 }  // namespace

@@ -26,13 +26,10 @@ vec2 two_product(float a, float b) {
   return vec2(product, rest);
 }
 
-// a * b - c * d with its exact sign. Rounding is monotonic, so the plain difference has it unless it is zero; then the
-// rounded products are equal, and their rests decide.
+// a * b - c * d, as good as rounded once. Never of the wrong sign: rounding is monotonic, so where the rounded products
+// differ, so do the exact ones, and the rests are too small to turn the sign.
 float product_difference(float a, float b, float c, float d) {
-  precise float difference = a * b - c * d;
-  if (difference == 0.0) {
-    precise float rest = two_product(a, b).y - two_product(c, d).y;
-    difference = rest;
-  }
+  vec2 p = two_product(a, b), q = two_product(c, d);
+  precise float difference = (p.x - q.x) + (p.y - q.y);
   return difference;
 }

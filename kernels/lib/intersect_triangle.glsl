@@ -24,10 +24,16 @@ void intersect_fast(TraceRay ray, Triangle triangle, uint index, inout Hit hit) 
   keep_closer(ray, t, index, u / (determinant * side), v / (determinant * side), hit);
 }
 
+bool are_mixed(vec3 signs) {
+  return min(min(signs.x, signs.y), signs.z) < 0.0 && max(max(signs.x, signs.y), signs.z) > 0.0;
+}
+
+const float WATERTIGHT_SLIVER = 0.00390625;  // 2^-8, of a triangle of size 1 to 2
+
 // Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection": corners are sheared so that the ray is the z
 // axis, and the signs of the edge functions are exact, so of the triangles around an edge or corner one is hit. Where
-// the paper goes to double, error-free transforms of floats give the same bits. Corners are scaled by a power of two
-// first, so that products neither over- nor underflow.
+// the paper goes to double, error-free transforms of floats do as well on every device. Corners are scaled by a power of
+// two first, so that products neither over- nor underflow.
 void intersect_watertight(TraceRay ray, Triangle triangle, uint index, inout Hit hit) {
   precise vec3 a = cyclic(triangle.a - ray.origin, ray.axis);
   precise vec3 b = cyclic(triangle.b - ray.origin, ray.axis);
@@ -40,22 +46,19 @@ void intersect_watertight(TraceRay ray, Triangle triangle, uint index, inout Hit
   if (!(size > 0.0) || isinf(size)) return;
   float scale = uintBitsToFloat(max(254u - (floatBitsToUint(size) >> 23), 1u) << 23);
   precise vec2 p = a_sheared * scale, q = b_sheared * scale, r = c_sheared * scale;
-  precise float beside_bc = r.x * q.y - r.y * q.x;
-  precise float beside_ca = p.x * r.y - p.y * r.x;
-  precise float beside_ab = q.x * p.y - q.y * p.x;
-  if (beside_bc == 0.0 || beside_ca == 0.0 || beside_ab == 0.0) {
-    beside_bc = product_difference(r.x, q.y, r.y, q.x);
-    beside_ca = product_difference(p.x, r.y, p.y, r.x);
-    beside_ab = product_difference(q.x, p.y, q.y, p.x);
+  precise vec3 beside = vec3(r.x * q.y - r.y * q.x, p.x * r.y - p.y * r.x, q.x * p.y - q.y * p.x);  // bc, ca, ab
+  if (are_mixed(beside)) return;
+  precise float sum = beside.x + beside.y + beside.z;
+  // A zero may be a difference that rounding lost, and small ones are mostly rounding.
+  if (!(abs(sum) >= WATERTIGHT_SLIVER) || beside.x == 0.0 || beside.y == 0.0 || beside.z == 0.0) {
+    beside = vec3(product_difference(r.x, q.y, r.y, q.x), product_difference(p.x, r.y, p.y, r.x),
+                  product_difference(q.x, p.y, q.y, p.x));
+    sum = beside.x + beside.y + beside.z;
+    if (are_mixed(beside) || sum == 0.0) return;
   }
-  float least = min(min(beside_bc, beside_ca), beside_ab);
-  float most = max(max(beside_bc, beside_ca), beside_ab);
-  if (least < 0.0 && most > 0.0) return;
-  precise float sum = beside_bc + beside_ca + beside_ab;
-  if (!(sum != 0.0)) return;
-  precise float weighted = beside_bc * a.z + beside_ca * b.z + beside_ab * c.z;
+  precise float weighted = beside.x * a.z + beside.y * b.z + beside.z * c.z;
   precise float t = weighted / sum * ray.shear.z;
-  keep_closer(ray, t, index, beside_ca / sum, beside_ab / sum, hit);
+  keep_closer(ray, t, index, beside.y / sum, beside.z / sum, hit);
 }
 
 void intersect_triangle(TraceRay ray, Triangle triangle, uint index, inout Hit hit) {
