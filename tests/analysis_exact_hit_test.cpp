@@ -128,6 +128,18 @@ TEST(ExactMeeting, HoldsAtTheEndsOfTheRangeOfFloat) {
   EXPECT_FALSE(exact_meeting(tiny, ray_from(vec3(3 * least, 2 * least, most), vec3(0, 0, -most))).meets);
 }
 
+TEST(ExactMeeting, RoundsToNearest) {
+  const auto t_above = [](float at_a, float at_c) {
+    const Triangle triangle{vec3(0, 0, -at_a), vec3(1, 0, 0), vec3(0, 1, -at_c)};
+    return exact_meeting(triangle, down_at(0.25f, 0.25f)).t;  // 1 + at_a / 2 + at_c / 4
+  };
+  EXPECT_EQ(t_above(0x1p-51f, 0), 1 + 0x1p-52);
+  EXPECT_EQ(t_above(0x1p-52f, 0), 1);                   // half-way, to even
+  EXPECT_EQ(t_above(0x1p-52f, 0x1p-98f), 1 + 0x1p-52);  // just above half-way
+  EXPECT_EQ(t_above(0x1p-52f, -0x1p-98f), 1);           // just below
+  EXPECT_EQ(t_above(0x1p-52f, 0x1p-50f), 1 + 0x1p-51);  // three halves, to even
+}
+
 TEST(ExactMeeting, TakesDenormalDirectionComponentsForZero) {
   const Ray askew = ray_from(vec3(0.25f, 0.125f, 1), vec3(1e-38f, -1e-38f, -2e-38f));
   EXPECT_EQ(exact_meeting(FLOOR, askew).u, 0.25);
