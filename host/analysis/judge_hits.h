@@ -48,7 +48,8 @@ namespace coppice {
 //
 // A ray is MISSED if a triangle is a clear hit, and no hit or a false one is reported or one whose t is
 // greater than all that may be reported for that triangle. Rays whose exact hits lie within the room of an
-// end of the range may go either way.
+// end of the range may go either way. Where rays go from inside of a closed mesh with t_max = infinity,
+// missed + missed_at_edges are the leaks.
 struct HitVerdicts {
   std::uint64_t rays = 0;
   std::uint64_t hits = 0;        // reported
