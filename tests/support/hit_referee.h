@@ -28,7 +28,7 @@ enum class Verdict {
 
 class HitReferee {
  public:
-  static constexpr double ROUNDING = 0x1p-20;  // 16 roundings of a float; Embree's hits need 4
+  static constexpr double ROUNDING = 0x1p-20;  // 16 roundings of a float; Embree's hits need 5 to 8
   static constexpr double SAME_DISTANCE = 1e-5;
 
   explicit HitReferee(std::span<const Triangle> triangles) : triangles_(triangles) {}
