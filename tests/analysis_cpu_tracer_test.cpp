@@ -1,4 +1,6 @@
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 
 #include <cmath>
 #include <cstring>
@@ -249,6 +251,20 @@ class TraceAll : public testing::Test {
 TEST_F(TraceAll, FindsTheHitOfEachRay) { expect_as_one_by_one(build_ploc(triangles_).nodes); }
 
 TEST_F(TraceAll, TestsEveryTriangleWithoutNodes) { expect_as_one_by_one({}); }
+
+TEST_F(TraceAll, GivesTheSameBitsOnAnyNumberOfThreads) {
+  const std::vector<Node> nodes = build_ploc(triangles_).nodes;
+  for (const int threads : {2, 4}) {
+    // TBB starts no more threads than there are processors unless it is told to.
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
+                                      static_cast<std::size_t>(threads));
+    tbb::task_arena(threads).execute([&] {
+      ASSERT_EQ(tbb::this_task_arena::max_concurrency(), threads);
+      expect_as_one_by_one(nodes);
+      expect_as_one_by_one({});
+    });
+  }
+}
 
 TEST_F(TraceAll, RefusesSpansOfDifferentLengths) {
   std::vector<Hit> hits(rays_.size() - 1);

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <random>
 
 #include "analysis/compare.h"
 #include "analysis/cpu_tracer.h"
@@ -11,9 +10,16 @@
 #include "builders/registry.h"
 #include "scene/generators.h"
 #include "scene/hard_cases.h"
+#include "support/rays.h"
 
 namespace coppice {
 namespace {
+
+#ifdef __SANITIZE_ADDRESS__
+constexpr std::uint32_t RAY_COUNT = 2000;
+#else
+constexpr std::uint32_t RAY_COUNT = 20000;
+#endif
 
 class EveryBuilder : public testing::TestWithParam<std::string_view> {};
 
@@ -31,19 +37,15 @@ TEST_P(EveryBuilder, GivesAValidTreeOnEveryHardCase) {
 TEST_P(EveryBuilder, GivesTheHitsOfBruteForce) {
   const auto triangles = scene_arrays(make_scatter(2000)).triangles;
   const Bvh bvh = find_cpu_builder(GetParam()).build(triangles, {});
-  std::mt19937 random(1);
-  const auto next = [&] { return static_cast<float>(random() >> 8) / 16777216.0f; };
-  std::vector<Ray> rays(2000);
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const Triangle& aim = triangles[i];
-    const vec3 target = aim.a * 0.4f + aim.b * 0.3f + aim.c * 0.3f;
-    const vec3 direction(next() - 0.5f, next() - 0.5f, next() - 0.5f);
-    rays[i] = {target - direction, 0, direction, std::numeric_limits<float>::infinity()};
-  }
+  std::vector<Ray> rays = rays_around(triangles, RAY_COUNT, 1);
+  const std::vector<Ray> at_edges = rays_at_edges(triangles, RAY_COUNT / 4, 2);
+  rays.insert(rays.end(), at_edges.begin(), at_edges.end());
   std::vector<Hit> by_tree(rays.size()), by_force(rays.size());
   trace_all(bvh.nodes, triangles, rays, by_tree);
   trace_all({}, triangles, rays, by_force);
   EXPECT_EQ(compare_hits(by_tree, by_force).count, 0u);
+  EXPECT_GT(std::ranges::count_if(by_force, [](const Hit& hit) { return hit.triangle != NO_TRIANGLE; }),
+            RAY_COUNT / 5);
 }
 
 std::vector<std::string_view> tree_builders() {
