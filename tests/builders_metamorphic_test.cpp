@@ -2,7 +2,6 @@
 // docs/numerics.md, "What the tree keeps", says why.
 #include <gtest/gtest.h>
 
-#include <glm/common.hpp>
 #include <string_view>
 
 #include "analysis/quality.h"

@@ -1,8 +1,6 @@
 // What a change of the scene does to the tree of the device: see builders_metamorphic_test.cpp.
 #include <gtest/gtest.h>
 
-#include <glm/common.hpp>
-
 #include "support/device_run.h"
 #include "support/metamorphic.h"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <glm/common.hpp>
 #include <numeric>
 #include <span>
 #include <vector>

@@ -41,7 +41,7 @@ class RandomScene {
   }
 
  private:
-  static constexpr std::uint32_t KINDS = 10;
+  static constexpr std::uint32_t KINDS = 11;
 
   bool chance(std::uint32_t one_in) { return random_.below(one_in) == 0; }
 
@@ -83,6 +83,8 @@ class RandomScene {
         return {vec3(-i), vec3(i), vec3(i, -i, i)};
       case 8:  // a row in which the next one is the nearest
         return {vec3(3 * i, 0, 0), vec3(3 * i + 1, 0, 0), vec3(3 * i, 1 - i * 0x1p-20f, 0)};
+      case 9:  // a speck, below the floor of normalised coordinates if the scene is large
+        return around(vec3(0), std::ldexp(1.0f, -40 - static_cast<int>(random_.below(80))));
       default:  // a crowd
         return around(vec3(1) + 1e-5f * point, 1e-6f);
     }
