@@ -12,7 +12,8 @@ namespace coppice {
 //
 // PLOC looks for neighbours within its search radius along the Morton order, and triangles of equal codes
 // stand in the order of the file. In a cell of many more triangles than the radius the search sees an
-// arbitrary few of them, unless the file is in good order: the "teapot in a stadium" of Glassner (1984).
+// arbitrary few of them, unless the file is in good order: the "teapot in a stadium" (E. Haines, "Spline
+// Surface Rendering, and What's Wrong with Octrees", Ray Tracing News, 1988).
 struct MortonCrowding {
   double with_30_bits = 0, with_60_bits = 0;
 };
