@@ -131,6 +131,39 @@ TEST_F(Command, BuildersReportTheSameTree) {
   EXPECT_EQ(reports[0]["tree_hash"].get<std::string>().size(), 16u);
 }
 
+TEST_F(Command, ChoosesTheMortonBitsThatTheSceneCallsFor) {
+  std::string crowded;
+  for (std::uint64_t i = 0; i < 3000; ++i) {
+    const std::uint64_t x = i * 7919 % 3001, y = i * 104729 % 2999, z = i * 1299709 % 2971;
+    for (const int side : {0, 1, 2}) {
+      crowded += "v " + std::to_string(x + side % 2) + " " + std::to_string(y + side / 2) + " " +
+                 std::to_string(z) + "\n";
+    }
+    crowded += "f -3 -2 -1\n";
+  }
+  write("crowded.obj", crowded + "v 9999999 9999999 0\nf -1 -1 -1\n");
+  const auto report_of = [](const std::string& arguments) {
+    const Outcome outcome = run("build --runs 1 --json - " + arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const bool noted = outcome.err.find("Morton codes of 60 bits") != std::string::npos;
+    return std::pair(nlohmann::json::parse(outcome.out), noted);
+  };
+  const auto [on_device, noted] = report_of("crowded.obj");
+  EXPECT_EQ(on_device["morton_bits"], 60);
+  EXPECT_TRUE(noted);
+  const auto [on_host, noted_too] = report_of("crowded.obj --builder ploc");
+  EXPECT_EQ(on_host["morton_bits"], 60);
+  EXPECT_TRUE(noted_too);
+  EXPECT_EQ(on_host["tree_hash"], on_device["tree_hash"]);
+  const auto [with_30, noted_30] = report_of("crowded.obj --morton-bits 30");
+  EXPECT_EQ(with_30["morton_bits"], 30);
+  EXPECT_FALSE(noted_30);
+  EXPECT_NE(with_30["tree_hash"], on_device["tree_hash"]);
+  EXPECT_EQ(report_of("terrain:5000").first["morton_bits"], 30);
+  EXPECT_EQ(report_of("terrain:5000 --morton-bits 60").first["morton_bits"], 60);
+  expect_refused("build --morton-bits 45", 2, "45");
+}
+
 TEST_F(Command, RendersOfAllBuildersAndTracersAgree) {
   std::vector<std::string> hashes;
   std::uint64_t hits = 0;

@@ -6,10 +6,10 @@
 
 namespace coppice {
 
-BuildOptions CheckedDevice::build_options(const Options& options) const {
+BuildOptions CheckedDevice::build_options(const Options& options, std::uint32_t morton_bits) const {
   BuildOptions build;
   build.radius = options.radius;
-  build.morton_bits = options.morton_bits;
+  build.morton_bits = morton_bits;
   build.lookback = lookback;
   return build;
 }

@@ -11,7 +11,8 @@ struct CheckedDevice {
   Device device;
   bool lookback;
 
-  BuildOptions build_options(const Options& options) const;
+  // `morton_bits`: 30 or 60, see morton_bits_for.
+  BuildOptions build_options(const Options& options, std::uint32_t morton_bits) const;
   TraceOptions trace_options(const Options& options) const;
 };
 

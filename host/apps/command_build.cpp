@@ -10,8 +10,8 @@ BuildReport build_on_device(const Options& options, const SceneArrays& arrays, B
                             int& status) {
   CheckedDevice device = open_device(options);
   Layout layout(device.device.properties().max_block_bytes);
-  const BuildPlan plan =
-      plan_build(layout, static_cast<std::uint32_t>(arrays.triangles.size()), device.build_options(options));
+  const BuildPlan plan = plan_build(layout, static_cast<std::uint32_t>(arrays.triangles.size()),
+                                    device.build_options(options, report.morton_bits));
   GpuExecutor executor(device.device, layout);
   executor.upload(plan.triangles, std::span<const Triangle>(arrays.triangles));
   for (const std::uint64_t bytes : layout.block_bytes()) report.device_bytes += bytes;
@@ -26,7 +26,7 @@ int run_build(const Options& options) {
   const Scene scene = open_scene(options.scene);
   print_warnings(scene);
   const SceneArrays arrays = scene_arrays(scene);
-  BuildReport report = report_for(options, scene);
+  BuildReport report = report_for(options, scene, arrays.triangles);
   int status = 0;
   Bvh bvh;
   report = options.builder == "gpu-ploc" ? build_on_device(options, arrays, report, status)

@@ -34,7 +34,7 @@ ComparisonRow measure(const std::string& scene, const std::string& builder, cons
   add("--size", std::to_string(options.width) + "x" + std::to_string(options.height));
   add("--runs", std::to_string(options.frames));
   add("--radius", std::to_string(options.radius));
-  add("--morton-bits", std::to_string(options.morton_bits));
+  add("--morton-bits", options.morton_bits);
   if (!options.device.empty()) add("--device", options.device);
   const ChildResult child = run_self(arguments, options.timeout_seconds);
   ComparisonRow row;

@@ -3,6 +3,7 @@
 #include "analysis/compare.h"
 #include "apps/checked_device.h"
 #include "apps/frame.h"
+#include "apps/measure_build.h"
 #include "apps/report.h"
 #include "scene/scene_source.h"
 #include "stages/errors.h"
@@ -53,7 +54,8 @@ int run_lockstep(const Options& options) {
   CheckedDevice device = open_device(options);
   Layout layout(device.device.properties().max_block_bytes);
   const BuildPlan build =
-      plan_build(layout, static_cast<std::uint32_t>(arrays.triangles.size()), device.build_options(options));
+      plan_build(layout, static_cast<std::uint32_t>(arrays.triangles.size()),
+                 device.build_options(options, morton_bits_for(options, arrays.triangles)));
   const TracePlan trace = plan_trace(layout, build, static_cast<std::uint32_t>(arrays.materials.size()),
                                      device.trace_options(options));
   LockstepExecutor executor(device.device, layout);

@@ -77,8 +77,10 @@ void add_ploc(CLI::App& command, Options& options) {
   command.add_option("--radius", options.radius, "search radius of PLOC")
       ->check(CLI::Range(1u, coppice::PLOC_MAX_RADIUS))
       ->capture_default_str();
-  command.add_option("--morton-bits", options.morton_bits)
-      ->check(CLI::IsMember({30u, 60u}))
+  command
+      .add_option("--morton-bits", options.morton_bits,
+                  "of the codes PLOC and LBVH sort by; auto: 60 where 30 leave cells crowded")
+      ->check(CLI::IsMember({"auto", "30", "60"}))
       ->capture_default_str();
   command
       .add_option("--lookback", options.lookback,

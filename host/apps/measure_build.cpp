@@ -1,10 +1,12 @@
 #include "apps/measure_build.h"
 
 #include <chrono>
+#include <cstdio>
 #include <thread>
 
 #include "analysis/tree_hash.h"
 #include "apps/progress.h"
+#include "builders/morton_crowding.h"
 #include "builders/registry.h"
 #include "stages/errors.h"
 
@@ -20,14 +22,23 @@ std::vector<Node> read_tree(const GpuExecutor& executor, const TreeSlots& tree) 
   return executor.read(Slot<Node>{tree.nodes.place, active == 0 ? 0 : 2 * active - 1});
 }
 
-BuildReport report_for(const Options& options, const Scene& scene) {
+std::uint32_t morton_bits_for(const Options& options, std::span<const Triangle> triangles) {
+  if (options.morton_bits == "auto") return choose_morton_bits(triangles);
+  return options.morton_bits == "60" ? 60 : 30;
+}
+
+BuildReport report_for(const Options& options, const Scene& scene, std::span<const Triangle> triangles) {
   BuildReport report;
   report.scene = scene.name;
   report.triangles = scene.indices.size();
   report.inactive = count_inactive(scene);
   report.builder = options.builder;
   report.radius = options.radius;
-  report.morton_bits = options.morton_bits;
+  report.morton_bits = morton_bits_for(options, triangles);
+  const bool sorts = options.builder == "gpu-ploc" || find_cpu_builder(options.builder).uses_morton_codes;
+  if (sorts && options.morton_bits == "auto" && report.morton_bits == 60) {
+    std::fprintf(stderr, "note: Morton codes of 60 bits, as cells of 30 are crowded (--morton-bits)\n");
+  }
   return report;
 }
 

@@ -13,8 +13,12 @@ void check_state(const GpuExecutor& executor, const TreeSlots& tree);
 // The tree of the last submit, as long as it came out.
 std::vector<Node> read_tree(const GpuExecutor& executor, const TreeSlots& tree);
 
-// What is known of the scene before any build.
-BuildReport report_for(const Options& options, const Scene& scene);
+// What the options say, and for "auto" what the scene calls for (choose_morton_bits): the same for builders
+// on the device and on the host. `triangles`: those of scene_arrays.
+std::uint32_t morton_bits_for(const Options& options, std::span<const Triangle> triangles);
+
+// What is known of the scene before any build. Says on stderr where 60 Morton bits were chosen and matter.
+BuildReport report_for(const Options& options, const Scene& scene, std::span<const Triangle> triangles);
 
 // Quality and hash of the tree, added to the report.
 void describe_tree(BuildReport& report, std::span<const Node> nodes);

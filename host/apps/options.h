@@ -16,10 +16,10 @@ struct Options {
 
   std::string builder = "gpu-ploc";
   std::uint32_t radius = 16;
-  std::uint32_t morton_bits = 30;
-  std::uint32_t runs = 5;         // of `build`
-  std::uint32_t frames = 1;       // of `render`: the whole frame so many times
-  std::string lookback = "auto";  // auto, on, off
+  std::string morton_bits = "auto";  // auto, 30, 60
+  std::uint32_t runs = 5;            // of `build`
+  std::uint32_t frames = 1;          // of `render`: the whole frame so many times
+  std::string lookback = "auto";     // auto, on, off
 
   std::vector<std::string> scenes, builders;  // of `compare`; empty: the default ones, all
   double timeout_seconds = 60;

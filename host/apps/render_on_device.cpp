@@ -97,13 +97,14 @@ RenderReport render_on_device(CheckedDevice& device, const Scene& scene, const O
   const bool builds = options.builder == "gpu-ploc";
   RenderReport report;
   report.trace_device = device.device.properties().name + ", " + device.device.properties().driver;
-  report.build = report_for(options, scene);
+  report.build = report_for(options, scene, arrays.triangles);
   Bvh bvh;
   if (!builds) report.build = measure_cpu_build(arrays.triangles, report.build, options.frames, bvh);
 
   Layout layout(device.device.properties().max_block_bytes);
   std::optional<BuildPlan> build;
-  if (builds) build = plan_build(layout, triangle_count, device.build_options(options));
+  if (builds)
+    build = plan_build(layout, triangle_count, device.build_options(options, report.build.morton_bits));
   const TreeSlots tree = builds ? *build : plan_tree(layout, triangle_count, bvh.nodes.size());
   TraceOptions trace_options = device.trace_options(options);
   trace_options.directional_light = scene.light.radiance != vec3(0);

@@ -14,8 +14,8 @@ namespace {
 Bvh build_on_device(CheckedDevice& device, const SceneArrays& arrays, BuildReport& report,
                     const Options& options) {
   Layout layout(device.device.properties().max_block_bytes);
-  const BuildPlan plan =
-      plan_build(layout, static_cast<std::uint32_t>(arrays.triangles.size()), device.build_options(options));
+  const BuildPlan plan = plan_build(layout, static_cast<std::uint32_t>(arrays.triangles.size()),
+                                    device.build_options(options, report.morton_bits));
   GpuExecutor executor(device.device, layout);
   executor.upload(plan.triangles, std::span<const Triangle>(arrays.triangles));
   report = measure_gpu_build(device, executor, plan, report, options);
@@ -30,7 +30,7 @@ RenderReport render_on_host(CheckedDevice* device, const Scene& scene, const Opt
   once.runs = options.frames;
   RenderReport report;
   report.trace_device = "host CPU";
-  report.build = report_for(options, scene);
+  report.build = report_for(options, scene, arrays.triangles);
   Bvh bvh;
   if (options.builder == "gpu-ploc") {
     bvh = build_on_device(*device, arrays, report.build, once);

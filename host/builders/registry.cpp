@@ -34,17 +34,17 @@ std::span<const CpuBuilder> cpu_builders() {
       {"sbvh", "Stich, Friedrich and Dietrich 2009, spatial splits",
        [](Triangles t, Config) { return build_sbvh(t); }, true},
       {"lbvh", "linear BVH",
-       [](Triangles t, Config c) { return build_lbvh(t, {.morton_bits = c.morton_bits}); }, false},
+       [](Triangles t, Config c) { return build_lbvh(t, {.morton_bits = c.morton_bits}); }, false, true},
       {"ploc", "Meister and Bittner 2018, sequential",
        [](Triangles t, Config c) {
          return build_ploc(t, {c.radius, c.morton_bits});
        },
-       false},
+       false, true},
       {"ploc-parallel", "Meister and Bittner 2018, all threads",
        [](Triangles t, Config c) {
          return build_ploc_parallel(t, {.radius = c.radius, .morton_bits = c.morton_bits});
        },
-       false},
+       false, true},
   };
   return builders;
 }

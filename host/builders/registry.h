@@ -18,7 +18,8 @@ struct CpuBuilder {
   std::string_view name;
   std::string_view paper;  // where its idea stands
   Bvh (*build)(std::span<const Triangle> triangles, const BuilderConfig& config);
-  bool splits_triangles;  // a triangle may stand in several leaves
+  bool splits_triangles;           // a triangle may stand in several leaves
+  bool uses_morton_codes = false;  // so BuilderConfig::morton_bits matters
 };
 
 // All of them, in the order in which tables list them; "none" builds no tree.
