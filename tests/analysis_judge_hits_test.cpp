@@ -233,26 +233,31 @@ TEST(JudgeHits, BoundsTheDistanceWhereARayGrazes) {
   EXPECT_EQ(false_at(2.1f, 0.75f), 1u);
 }
 
-// The accuracy of the triangle test of the twins, in the report of the tests.
-TEST(JudgeHits, MeasuresTheTestOfMoellerAndTrumbore) {
-  Trial trial(random_soup(1000, 3), RayKind::RANDOM, 5000);
-  for (std::size_t i = 0; i < trial.rays.size(); ++i) {
-    Hit hit{trial.rays[i].t_max, NO_TRIANGLE, 0, 0};
-    for (std::uint32_t k = 0; k < trial.triangles.size(); ++k) {
-      twins::ray_meets_triangle(trial.rays[i], trial.triangles[k], k, hit);
+// The accuracy of both triangle tests of the twins, in the report of the tests.
+TEST(JudgeHits, MeasuresTheTriangleTests) {
+  for (const uint triangle_test : {TRIANGLE_FAST, TRIANGLE_WATERTIGHT}) {
+    Trial trial(random_soup(1000, 3), RayKind::RANDOM, 5000);
+    for (std::size_t i = 0; i < trial.rays.size(); ++i) {
+      const twins::TraceRay ray(trial.rays[i]);
+      trial.hits[i] = {trial.rays[i].t_max, NO_TRIANGLE, 0, 0};
+      Hit hit = ray.prepared(trial.hits[i]);
+      for (std::uint32_t k = 0; k < trial.triangles.size(); ++k) {
+        twins::ray_meets_triangle(ray, trial.triangles[k], k, triangle_test, hit);
+      }
+      ray.keep(hit, trial.hits[i]);
     }
-    trial.hits[i] = hit;
+    const HitVerdicts verdicts = trial.judge();
+    const std::string prefix = triangle_test == TRIANGLE_FAST ? "fast_" : "watertight_";
+    RecordProperty(prefix + "worst_t_ulps", std::to_string(verdicts.worst_t_ulps));
+    RecordProperty(prefix + "worst_t_scaled", std::to_string(verdicts.worst_t_scaled));
+    RecordProperty(prefix + "worst_uv_ulps", std::to_string(verdicts.worst_uv_ulps));
+    EXPECT_GT(verdicts.hits, 1000u);
+    EXPECT_EQ(verdicts.missed, 0u);
+    EXPECT_EQ(verdicts.false_hits, 0u);
+    // Single precision shows, but the room for rounding of judge_hits.h is not used up.
+    EXPECT_GT(verdicts.worst_t_ulps, 1);
+    EXPECT_LT(verdicts.worst_t_scaled, 1000);
   }
-  const HitVerdicts verdicts = trial.judge();
-  RecordProperty("worst_t_ulps", std::to_string(verdicts.worst_t_ulps));
-  RecordProperty("worst_t_scaled", std::to_string(verdicts.worst_t_scaled));
-  RecordProperty("worst_uv_ulps", std::to_string(verdicts.worst_uv_ulps));
-  EXPECT_GT(verdicts.hits, 1000u);
-  EXPECT_EQ(verdicts.missed, 0u);
-  EXPECT_EQ(verdicts.false_hits, 0u);
-  // Single precision shows, but the room for rounding of judge_hits.h is not used up.
-  EXPECT_GT(verdicts.worst_t_ulps, 1);
-  EXPECT_LT(verdicts.worst_t_scaled, 1000);
 }
 
 // Squares of 1e38 overflow: a test in plain single precision loses everything, and the judge must see it.

@@ -10,6 +10,7 @@
 #include "pipeline/build.h"
 #include "support/builders.h"
 #include "support/metamorphic.h"
+#include "support/split_trees.h"
 #include "support/triangles.h"
 
 namespace coppice {
@@ -40,7 +41,7 @@ Bvh build(std::string_view name, const Triangles& triangles, std::uint32_t radiu
 // --- Scale
 
 TEST(Metamorphic, PowersOfTwoScaleTheBoxesAndKeepTheTree) {
-  const Triangles triangles = random_soup(500, 1);
+  const Triangles triangles = split_test_soup(500, 0.5f, 1);
   for (const std::string_view name : EVERY_BUILDER) {
     const Bvh bvh = build(name, triangles);
     EXPECT_EQ(bvh.nodes.size() > 2 * triangles.size() - 1, find_cpu_builder(name).splits_triangles) << name;

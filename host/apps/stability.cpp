@@ -5,6 +5,7 @@
 #include "analysis/hard_rays.h"
 #include "analysis/validate.h"
 #include "apps/frame.h"
+#include "apps/measure_build.h"
 #include "apps/ray_tracing.h"
 #include "builders/ploc.h"
 #include "scene/hard_cases.h"
@@ -35,8 +36,8 @@ struct BatchedRays {
 void build_in_lockstep(CheckedDevice& device, std::span<const Triangle> triangles, const Options& options,
                        StabilityCase& result, std::vector<Node>& nodes) {
   Layout layout(device.device.properties().max_block_bytes);
-  const BuildPlan plan =
-      plan_build(layout, static_cast<std::uint32_t>(triangles.size()), device.build_options(options));
+  const BuildPlan plan = plan_build(layout, static_cast<std::uint32_t>(triangles.size()),
+                                    device.build_options(options, morton_bits_for(options, triangles)));
   LockstepExecutor executor(device.device, layout);
   executor.upload(plan.triangles, triangles);
   if (const auto difference = executor.run([&](Chain& chain) { append_build(chain, plan); })) {
