@@ -1,0 +1,76 @@
+// Hard cases stay stable: builds end within their bounds with valid trees of the same bits everywhere, and
+// with the accurate tests no ray loses or invents a hit. A small run of `coppice stability`.
+#include <nlohmann/json.hpp>
+
+#include "support/command.h"
+
+namespace coppice {
+namespace {
+
+class Stability : public Command {
+ protected:
+  // Under the validation layers.
+  static nlohmann::json report_of(const std::string& arguments) {
+    const Outcome outcome = run("stability --validate --json - " + arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.status == 0 || outcome.out.starts_with("{") ? nlohmann::json::parse(outcome.out)
+                                                               : nlohmann::json();
+  }
+
+  static bool is_accurate(const nlohmann::json& row) {
+    return row["triangle_test"] == "watertight" && row["box_test"] == "robust";
+  }
+};
+
+TEST_F(Stability, EveryHardCase) {
+  const nlohmann::json report = report_of("--triangles 300 --rays 40 --leak-rays 0");
+  ASSERT_GE(report["cases"].size(), 30u);
+  std::uint64_t hits = 0, fast_faults = 0;
+  for (const nlohmann::json& one : report["cases"]) {
+    const std::string name = one["case"];
+    EXPECT_TRUE(one["passes"]) << name;
+    EXPECT_TRUE(one["valid"]) << name << ": " << one["fault"];
+    EXPECT_TRUE(one["bits_equal"]) << name << ": " << one["first_difference"];
+    EXPECT_TRUE(one["same_as_builder"]) << name;
+    EXPECT_LE(one["rounds"], one["rounds_bound"]) << name;
+    EXPECT_EQ(one["variants"].size(), 4u);
+    for (const nlohmann::json& variant : one["variants"]) {
+      EXPECT_TRUE(variant["bits_equal"]) << name;
+      hits += variant["hits"].get<std::uint64_t>();
+      if (variant["triangle_test"] == "fast") {
+        fast_faults += variant["missed"].get<std::uint64_t>() + variant["false_hits"].get<std::uint64_t>();
+      }
+      if (!is_accurate(variant)) continue;
+      for (const auto& [kind, rays] : variant["kinds"].items()) {
+        EXPECT_EQ(rays["missed"], 0) << name << ", " << kind << ": " << rays["example"];
+        EXPECT_EQ(rays["leaks"], 0) << name << ", " << kind;
+        EXPECT_EQ(rays["false_hits"], rays["false_on_degenerate"])
+            << name << ", " << kind << ": " << rays["example"];
+      }
+    }
+  }
+  EXPECT_GT(hits, 10000u);
+  EXPECT_GT(fast_faults, 0u);  // or the rays were not hard
+}
+
+TEST_F(Stability, ClosedMeshesDoNotLeak) {
+  const nlohmann::json report = report_of("--cases room --triangles 14 --rays 1 --leak-rays 20000");
+  ASSERT_EQ(report["leaks"].size(), 4u * 5u * 4u);  // meshes, scales, variants
+  std::uint64_t leaks_of_fast = 0;
+  for (const nlohmann::json& leak : report["leaks"]) {
+    EXPECT_EQ(leak["rays"], 20000);
+    if (is_accurate(leak)) {
+      EXPECT_EQ(leak["leaks"], 0) << leak["mesh"] << " at scale " << leak["scale"];
+    } else if (leak["triangle_test"] == "fast") {
+      leaks_of_fast += leak["leaks"].get<std::uint64_t>();
+    }
+  }
+  EXPECT_GT(leaks_of_fast, 0u);
+}
+
+TEST_F(Stability, AnUnknownCaseIsRefused) {
+  expect_refused("stability --cases nonsense", 1, "--cases: unknown hard case 'nonsense'");
+}
+
+}  // namespace
+}  // namespace coppice
