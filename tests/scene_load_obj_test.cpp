@@ -234,6 +234,8 @@ TEST_F(LoadObj, AnIndexThatIsNoNumberNamesItsLine) {
   EXPECT_EQ(error_in(TRIANGLE + "f 1 2 x\n"), "bad.obj:4: 'x' is no vertex index");
   EXPECT_EQ(error_in(TRIANGLE + "f 1 2 3.5\n"), "bad.obj:4: '3.5' is no vertex index");
   EXPECT_EQ(error_in(TRIANGLE + "f 1 2 /3\n"), "bad.obj:4: '/3' is no vertex index");
+  EXPECT_EQ(error_in(TRIANGLE + "f 1/2/3/4 2 3\n"), "bad.obj:4: '1/2/3/4' is no vertex index");
+  EXPECT_EQ(error_in(TRIANGLE + "f 1//2/3 2 3\n"), "bad.obj:4: '1//2/3' is no vertex index");
 }
 
 TEST_F(LoadObj, AFaceWithFewerThanThreeVerticesNamesItsLine) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <sstream>
 
 #include "scene/printable.h"
@@ -38,8 +37,8 @@ Material to_material(const tinyobj::material_t& mtl) {
 
 }  // namespace
 
-ObjMaterials::ObjMaterials(const std::filesystem::path& obj_path, std::vector<std::string>& warnings)
-    : folder_(obj_path.parent_path()), warnings_(warnings) {}
+ObjMaterials::ObjMaterials(OpenMtl open, std::vector<std::string>& warnings)
+    : open_(std::move(open)), warnings_(warnings) {}
 
 bool ObjMaterials::operator()(const std::string& name, std::vector<tinyobj::material_t>*,
                               std::map<std::string, int>*, std::string*, std::string*) {
@@ -47,11 +46,8 @@ bool ObjMaterials::operator()(const std::string& name, std::vector<tinyobj::mate
   // line.
   constexpr bool ask_for_the_next = false;
 
-  std::error_code error;
-  const std::filesystem::path path = folder_ / name;
-  std::ifstream file;
-  if (std::filesystem::is_regular_file(path, error)) file.open(path, std::ios::binary);
-  if (!file.is_open()) {
+  const std::unique_ptr<std::istream> file = open_(name);
+  if (!file) {
     warn("material file '" + printable(std::string_view(name)) + "' not found");
     return ask_for_the_next;
   }
@@ -59,7 +55,7 @@ bool ObjMaterials::operator()(const std::string& name, std::vector<tinyobj::mate
   std::vector<tinyobj::material_t> read;
   std::map<std::string, int> ignored_map;
   std::string mtl_warnings, ignored_error;
-  tinyobj::LoadMtl(&ignored_map, &read, &file, &mtl_warnings, &ignored_error);
+  tinyobj::LoadMtl(&ignored_map, &read, file.get(), &mtl_warnings, &ignored_error);
   std::size_t count = 0;
   for (const tinyobj::material_t& mtl : read) {
     if (mtl.name.empty()) continue;  // what stood before the first newmtl

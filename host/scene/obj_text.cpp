@@ -19,23 +19,6 @@
 namespace coppice {
 namespace {
 
-std::string read_file(const std::filesystem::path& path) {
-  const std::string name = printable(path);
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw InputError(name + ": no such file");
-  if (std::filesystem::is_directory(status)) throw InputError(name + ": is a directory, not an OBJ file");
-  if (!std::filesystem::is_regular_file(status)) throw InputError(name + ": not a regular file");
-
-  const auto size = std::filesystem::file_size(path, error);
-  std::ifstream file(path, std::ios::binary);
-  if (error || !file) throw InputError(name + ": cannot open: " + std::strerror(errno));
-  if (size == 0) throw InputError(name + ": empty file");
-  std::string text(size, '\0');
-  if (!file.read(text.data(), static_cast<std::streamsize>(size))) throw InputError(name + ": cannot read");
-  return text;
-}
-
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
 
 // The blank-separated words of a line.
@@ -162,9 +145,11 @@ class ObjChecker {
     ++face_count_;
   }
 
-  // `word` is i, i/j, i//k or i/j/k; only i is looked at, for normals and texture coordinates are not used.
+  // `word` is i, i/j, i//k or i/j/k; of these only i is looked at, for normals and texture coordinates are
+  // not used. With another slash tinyobjloader would take the rest for an index 0.
   void check_index(std::string_view word) {
     const std::string_view digits = word.substr(0, word.find('/'));
+    if (std::count(word.begin(), word.end(), '/') > 2) fail("'" + printable(word) + "' is no vertex index");
     std::int32_t index = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
     if (end != digits.data() + digits.size() || error == std::errc::invalid_argument) {
@@ -221,10 +206,27 @@ class ObjChecker {
 
 }  // namespace
 
-ObjText read_obj_text(const std::filesystem::path& path) {
+std::string read_obj_file(const std::filesystem::path& path) {
+  const std::string name = printable(path);
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) throw InputError(name + ": no such file");
+  if (std::filesystem::is_directory(status)) throw InputError(name + ": is a directory, not an OBJ file");
+  if (!std::filesystem::is_regular_file(status)) throw InputError(name + ": not a regular file");
+
+  const auto size = std::filesystem::file_size(path, error);
+  std::ifstream file(path, std::ios::binary);
+  if (error || !file) throw InputError(name + ": cannot open: " + std::strerror(errno));
+  if (size == 0) throw InputError(name + ": empty file");
+  std::string text(size, '\0');
+  if (!file.read(text.data(), static_cast<std::streamsize>(size))) throw InputError(name + ": cannot read");
+  return text;
+}
+
+ObjText check_obj_text(std::string text, const std::string& name) {
   ObjText obj;
-  obj.text = read_file(path);
-  ObjChecker(printable(path), obj).check();
+  obj.text = std::move(text);
+  ObjChecker(name, obj).check();
   return obj;
 }
 

@@ -16,7 +16,10 @@ struct ObjText {
   std::vector<std::string> warnings;  // one line each
 };
 
-// Reads and checks a file in one pass. Throws InputError as load_obj says.
-ObjText read_obj_text(const std::filesystem::path& path);
+// The bytes of a file that may be an OBJ. Throws InputError as load_obj says.
+std::string read_obj_file(const std::filesystem::path& path);
+
+// Checks a text in one pass. `name` begins the messages. Throws InputError as load_obj says.
+ObjText check_obj_text(std::string text, const std::string& name);
 
 }  // namespace coppice

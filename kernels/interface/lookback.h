@@ -8,7 +8,7 @@ INTERFACE_BEGIN
 const uint LOOKBACK_REVERSED = 1;
 const uint LOOKBACK_REVERSED_TILES = 16;
 
-// By a hash of its number, a tile leaves out its aggregate, its inclusive prefix, both or neither.
+// By a hash of tile and sum, the aggregate is left out, the inclusive prefix, both or neither.
 const uint LOOKBACK_WITHHELD = 2;
 
 // The upper bits: the tiles 1 to LOOKBACK_STRESS >> LOOKBACK_SILENT_SHIFT never report, neither their own

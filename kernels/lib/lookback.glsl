@@ -56,11 +56,11 @@ uint started_tile(uint ticket, uint tile_count) {
 // One of the tiles 1, 2, ... that store no word, not even those of others.
 bool is_silent(uint tile) { return tile - 1u < LOOKBACK_STRESS >> LOOKBACK_SILENT_SHIFT; }
 
-// Whether the tile leaves out the word that `flag` marks.
-bool withholds(uint tile, uint flag) {
+// Whether the tile leaves out, of its v-th sum, the word that `flag` marks.
+bool withholds(uint tile, uint v, uint flag) {
   if (is_silent(tile)) return true;
   if ((LOOKBACK_STRESS & LOOKBACK_WITHHELD) == 0u) return false;
-  uint hash = (tile + 1u) * 0x9e3779b9u;
+  uint hash = (tile * 8u + v % 8u + 1u) * 0x9e3779b9u;
   hash = (hash ^ (hash >> 15)) * 0x85ebca6bu;
   return (hash & flag) != 0u;  // each flag is one of the hash's upper bits
 }
@@ -72,7 +72,7 @@ uint lookback(CoherentUintBuffer status, uint tile) {
   uint first_flag = tile == 0u ? LOOKBACK_INCLUSIVE : LOOKBACK_AGGREGATE;
   [[dont_unroll]] for (uint v = lane; v < LOOKBACK_SUMS; v += LOOKBACK_GROUP) {
     uint own = tile_sums[v];
-    if (!withholds(tile, first_flag)) status.at[tile * LOOKBACK_SUMS + v] = first_flag | own;
+    if (!withholds(tile, v, first_flag)) status.at[tile * LOOKBACK_SUMS + v] = first_flag | own;
     lookback_own[v] = own;
     lookback_prefix[v] = 0u;
   }
@@ -112,8 +112,9 @@ uint lookback(CoherentUintBuffer status, uint tile) {
     open = any_in_workgroup(open);
   }
 
-  if (tile != 0u && !withholds(tile, LOOKBACK_INCLUSIVE)) {
+  if (tile != 0u) {
     [[dont_unroll]] for (uint v = lane; v < LOOKBACK_SUMS; v += LOOKBACK_GROUP) {
+      if (withholds(tile, v, LOOKBACK_INCLUSIVE)) continue;
       status.at[tile * LOOKBACK_SUMS + v] = LOOKBACK_INCLUSIVE | (lookback_prefix[v] + lookback_own[v]);
     }
   }
