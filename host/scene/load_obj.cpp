@@ -1,6 +1,7 @@
 #include "scene/load_obj.h"
 
 #include <fstream>
+#include <iterator>
 #include <sstream>
 
 #include "scene/obj_materials.h"
@@ -46,7 +47,7 @@ tinyobj::callback_t callbacks() {
 }  // namespace
 
 Scene parse_obj(std::string text, const std::string& name,
-                const std::function<std::unique_ptr<std::istream>(const std::string& name)>& open_mtl) {
+                const std::function<std::optional<std::string>(const std::string& name)>& read_mtl) {
   ObjText obj = check_obj_text(std::move(text), name);
   Scene scene;
   // Ours, not tinyobjloader's: it reads what is no number as 0, and rounds decimals less well.
@@ -55,7 +56,7 @@ Scene parse_obj(std::string text, const std::string& name,
 
   // By callbacks, not LoadObj: that one drops triangles of polygons that it cannot cut, takes quadratic time
   // over large ones, and fails on lines and points with odd indices, which we have no use for.
-  ObjMaterials materials(open_mtl, scene.warnings);
+  ObjMaterials materials(read_mtl, scene.warnings);
   Reading reading{.scene = scene, .materials = materials, .polygon = {}};
   std::istringstream stream(std::move(obj.text));
   tinyobj::LoadObjWithCallback(stream, callbacks(), &reading, &materials);
@@ -64,13 +65,14 @@ Scene parse_obj(std::string text, const std::string& name,
 }
 
 Scene load_obj(const std::filesystem::path& path) {
-  const auto open_mtl = [folder = path.parent_path()](const std::string& name) {
+  const auto read_mtl = [folder = path.parent_path()](const std::string& name) -> std::optional<std::string> {
     std::error_code error;
-    auto file = std::make_unique<std::ifstream>();
-    if (std::filesystem::is_regular_file(folder / name, error)) file->open(folder / name, std::ios::binary);
-    return file->is_open() ? std::move(file) : nullptr;
+    std::ifstream file;
+    if (std::filesystem::is_regular_file(folder / name, error)) file.open(folder / name, std::ios::binary);
+    if (!file.is_open()) return std::nullopt;
+    return std::string(std::istreambuf_iterator<char>(file), {});
   };
-  Scene scene = parse_obj(read_obj_file(path), printable(path), open_mtl);
+  Scene scene = parse_obj(read_obj_file(path), printable(path), read_mtl);
   scene.name = printable(path.stem());
   return scene;
 }

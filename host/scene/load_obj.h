@@ -2,8 +2,7 @@
 
 #include <filesystem>
 #include <functional>
-#include <istream>
-#include <memory>
+#include <optional>
 #include <string>
 
 #include "scene/scene.h"
@@ -20,9 +19,9 @@ namespace coppice {
 // vertices or with an index that is zero, out of range or no number.
 Scene load_obj(const std::filesystem::path& path);
 
-// The same of a text in memory. `name` begins the messages; `open_mtl` gives the text of an MTL file by the
-// name in the OBJ, null where there is none. The scene has no name.
+// The same of a text in memory. `name` begins the messages; `read_mtl` gives the text of an MTL file by the
+// name in the OBJ, nothing where there is none. The scene has no name.
 Scene parse_obj(std::string text, const std::string& name,
-                const std::function<std::unique_ptr<std::istream>(const std::string& name)>& open_mtl);
+                const std::function<std::optional<std::string>(const std::string& name)>& read_mtl);
 
 }  // namespace coppice

@@ -3,9 +3,8 @@
 #include <tiny_obj_loader.h>
 
 #include <functional>
-#include <istream>
 #include <map>
-#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,11 +16,11 @@ namespace coppice {
 // warning.
 class ObjMaterials : public tinyobj::MaterialReader {
  public:
-  // The text of the file of that name, null where there is none.
-  using OpenMtl = std::function<std::unique_ptr<std::istream>(const std::string& name)>;
+  // The text of the file of that name, nothing where there is none.
+  using ReadMtl = std::function<std::optional<std::string>(const std::string& name)>;
 
   // Warnings are appended to `warnings`.
-  ObjMaterials(OpenMtl open, std::vector<std::string>& warnings);
+  ObjMaterials(ReadMtl read, std::vector<std::string>& warnings);
 
   // tinyobjloader's hook, called for each file that `mtllib` names.
   bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
@@ -37,7 +36,7 @@ class ObjMaterials : public tinyobj::MaterialReader {
  private:
   void warn(std::string line);
 
-  OpenMtl open_;
+  ReadMtl read_;
   std::vector<std::string>& warnings_;
   std::vector<Material> materials_ = {Material{}};
   std::map<std::string, std::uint32_t, std::less<>> index_of_;

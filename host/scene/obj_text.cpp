@@ -92,8 +92,7 @@ class ObjChecker {
       while (end < text.size() && text[end] != '\n' && text[end] != '\r') ++end;
       if (end == text.size() || end == begin || text[end - 1] != '\\' || is_comment) return end;
       const std::size_t next_line = end + (text.compare(end, 2, "\r\n") == 0 ? 2 : 1);
-      std::fill(text.begin() + static_cast<std::ptrdiff_t>(end - 1),
-                text.begin() + static_cast<std::ptrdiff_t>(next_line), ' ');
+      blank_out(end - 1, next_line);
       end = next_line;
       ++lines_in_statement_;
     }
@@ -103,14 +102,27 @@ class ObjChecker {
     Words words(std::string_view(obj_.text).substr(begin, end - begin));
     const std::string_view keyword = words.next();
     if (keyword.empty() || keyword[0] == '#') return;
-    if (keyword == "v") {
-      read_vertex(words);
-    } else if (keyword == "f") {
-      check_face(words, end);
-    }
     if (!recognised_) {
       recognised_ = std::find(STATEMENTS.begin(), STATEMENTS.end(), keyword) != STATEMENTS.end();
     }
+    // tinyobjloader overflows an int on exponents of ten digits, so it sees no numbers but indices.
+    if (keyword == "v") {
+      read_vertex(words);
+      blank_out(offset_of(keyword) + 1, end);
+    } else if (keyword == "vn" || keyword == "vt") {
+      blank_out(begin, end);
+    } else if (keyword == "f") {
+      check_face(words, end);
+    }
+  }
+
+  std::size_t offset_of(std::string_view word) const {
+    return static_cast<std::size_t>(word.data() - obj_.text.data());
+  }
+
+  void blank_out(std::size_t begin, std::size_t end) {
+    std::fill(obj_.text.begin() + static_cast<std::ptrdiff_t>(begin),
+              obj_.text.begin() + static_cast<std::ptrdiff_t>(end), ' ');
   }
 
   void read_vertex(Words& words) {
@@ -130,9 +142,7 @@ class ObjChecker {
     std::size_t vertex_count = 0;
     for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
       if (word[0] == '#') {
-        const auto comment = word.data() - obj_.text.data();
-        std::fill(obj_.text.begin() + comment, obj_.text.begin() + static_cast<std::ptrdiff_t>(line_end),
-                  ' ');
+        blank_out(offset_of(word), line_end);
         break;
       }
       check_index(word);

@@ -10,7 +10,7 @@ namespace coppice {
 // The text of an OBJ file that has been checked: every face has at least three vertices, every vertex index
 // is within the file, every vertex has three coordinates. A parser that trusts its input may read it.
 struct ObjText {
-  std::string text;  // continued lines joined, comments after a face blanked out
+  std::string text;  // continued lines joined; coordinates, normals and comments after a face blanked out
   std::vector<glm::vec3>
       positions;  // of the `v` statements in order; non-finite where the text is no finite float
   std::vector<std::string> warnings;  // one line each

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "scene/input_error.h"
 #include "scene/load_obj.h"
@@ -53,9 +52,9 @@ std::string complaint_about_obj(std::string_view input) {
   const std::string mtl(end == input.npos ? "" : input.substr(end + separator.size()));
   try {
     return complaint_about(
-        parse_obj(obj, "fuzz.obj", [&](const std::string& name) -> std::unique_ptr<std::istream> {
-          if (name.starts_with("missing")) return nullptr;
-          return std::make_unique<std::istringstream>(mtl);
+        parse_obj(obj, "fuzz.obj", [&](const std::string& name) -> std::optional<std::string> {
+          if (name.starts_with("missing")) return std::nullopt;
+          return mtl;
         }));
   } catch (const InputError& error) {
     const std::string what = error.what();
