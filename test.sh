@@ -4,9 +4,11 @@
 #   ./test.sh                    everything
 #   ./test.sh CTEST_ARGUMENT...  one ctest run on the reference driver, for example ./test.sh -R sort
 # COPPICE_DRIVER=auto|private|stock|system chooses the Vulkan driver, see host/setup.sh.
+# COPPICE_FUZZ_SECONDS is how long the OBJ reader is fuzzed, 20 unless given.
 set -euo pipefail
 source "$(dirname "$(realpath "${BASH_SOURCE[0]}")")/host/setup.sh"
 
+fuzz_seconds=${COPPICE_FUZZ_SECONDS:-20}
 test_timeout=300 # seconds a test, where CMake sets no other
 failed_checks=()
 
@@ -44,6 +46,18 @@ host_tests_sanitized() {
   UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1 run_ctest "$build_dir/sanitize" -L host
 }
 
+# Coverage-guided, from the corpus on. What it finds new stays in the build folder and is where the next run
+# begins.
+fuzz_obj_reader() {
+  local folder=$build_dir/fuzz
+  mkdir -p "$folder/found"
+  "$folder/obj_fuzzer" -max_total_time="$fuzz_seconds" -timeout=5 -rss_limit_mb=2048 -max_len=4096 \
+    -dict="$root/tests/fuzz/obj.dict" -artifact_prefix="$folder/" "$folder/found" "$root/tests/fuzz/corpus" \
+    >"$folder/fuzz.log" 2>&1 </dev/null && return
+  tail -n 60 "$folder/fuzz.log" >&2
+  return 1
+}
+
 install_missing "${build_packages[@]}" "${test_packages[@]}"
 available_drivers
 reference=${drivers[0]}
@@ -58,6 +72,12 @@ check "format" format_is_clean
 build ci "$build_dir"
 build sanitize "$build_dir/sanitize" host_tests
 check "host tests under AddressSanitizer and UndefinedBehaviorSanitizer" host_tests_sanitized
+if command -v clang++ >/dev/null; then
+  build fuzz "$build_dir/fuzz" obj_fuzzer
+  check "the OBJ reader under libFuzzer for $fuzz_seconds seconds" fuzz_obj_reader
+else
+  say "no clang: the OBJ reader is not fuzzed"
+fi
 for driver in "${drivers[@]:1}"; do
   check "device tests on $(describe_driver "$driver")" run_ctest_on "$driver" -L device
 done

@@ -14,6 +14,7 @@ build_packages=(
 )
 test_packages=(
   libgtest-dev libgmock-dev libbenchmark-dev vulkan-validationlayers clang-format libembree-dev
+  clang libclang-rt-dev
 )
 # Built from the same sources as the lavapipe; without its own libdrm it would meet the system's older one.
 lavapipe_packages=(mesa-vulkan-drivers libdrm2 libdrm-amdgpu1)

@@ -94,5 +94,7 @@ void main() {
   if (i != 0u) return;
   args.state.at[0].round_count = round_index;
   if (round.cluster_count != min(active_count, 1u)) atomicOr(args.state.at[0].error_word, ERROR_PLOC_ROUNDS);
+  // So that a trace in the same submit does not walk what a failed build left: it may be no tree.
+  if (args.state.at[0].error_word != 0u) args.state.at[0].active_count = 0u;
   if (round.cluster_count == 1u) args.nodes.at[0] = clusters[0];
 }

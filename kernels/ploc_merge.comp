@@ -70,7 +70,7 @@ void main() {
     // Partners: the workgroups of this round. The order of tickets is an order in which tiles have started.
     if (gl_LocalInvocationIndex == 0u) ticket = atomicAdd(args.rounds.at[args.round].ticket, 1u);
     barrier();
-    tile = ticket;
+    tile = started_tile(ticket, gl_NumWorkGroups.x);
   }
   Fates fates = find_fates(tile, round.cluster_count);
   uvec2 sums = sum_fates(fates);

@@ -69,7 +69,7 @@ void main() {
     // Partners: the workgroups of this pass. The order of tickets is an order in which tiles have started.
     if (gl_LocalInvocationIndex == 0u) ticket = atomicAdd(args.ticket.at[0], 1u);
     barrier();
-    tile = ticket;
+    tile = started_tile(ticket, gl_NumWorkGroups.x);
   }
   if (!find_tile_prefix(tile)) {
     if (gl_LocalInvocationIndex == 0u) atomicOr(args.state.at[0].error_word, ERROR_SORT_LOOKBACK);

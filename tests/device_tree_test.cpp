@@ -7,7 +7,6 @@
 #include "analysis/validate.h"
 #include "apps/frame.h"
 #include "builders/ploc.h"
-#include "pipeline/self_check.h"
 #include "scene/hard_cases.h"
 #include "stages/gpu_executor.h"
 #include "support/device_run.h"
@@ -110,8 +109,6 @@ TEST_F(DeviceTree, InSeveralBlocksOfMemoryTheSameTree) {
   executor.record(chain.steps()).submit_and_wait(submit_limit_seconds);
   EXPECT_EQ(tree_hash(executor.read(plan.nodes)), tree_hash(build_ploc(triangles, {}).nodes));
 }
-
-TEST_F(DeviceTree, TheSelfCheckPasses) { EXPECT_NO_THROW(check_lookback(test_device())); }
 
 TEST(RoundsBound, IsASmallMultipleOfTheLogarithm) {
   for (std::uint32_t exponent = 1; exponent <= 25; ++exponent) {

@@ -234,6 +234,8 @@ TEST_F(LoadObj, AnIndexThatIsNoNumberNamesItsLine) {
   EXPECT_EQ(error_in(TRIANGLE + "f 1 2 x\n"), "bad.obj:4: 'x' is no vertex index");
   EXPECT_EQ(error_in(TRIANGLE + "f 1 2 3.5\n"), "bad.obj:4: '3.5' is no vertex index");
   EXPECT_EQ(error_in(TRIANGLE + "f 1 2 /3\n"), "bad.obj:4: '/3' is no vertex index");
+  EXPECT_EQ(error_in(TRIANGLE + "f 1/2/3/4 2 3\n"), "bad.obj:4: '1/2/3/4' is no vertex index");
+  EXPECT_EQ(error_in(TRIANGLE + "f 1//2/3 2 3\n"), "bad.obj:4: '1//2/3' is no vertex index");
 }
 
 TEST_F(LoadObj, AFaceWithFewerThanThreeVerticesNamesItsLine) {
@@ -271,6 +273,16 @@ TEST_F(LoadObj, SurvivesAFaceOfAMillionCharacters) {
   std::string face = "f";
   for (int i = 0; i < 170000; ++i) face += " 1 2 3";
   EXPECT_EQ(load(TRIANGLE + face).indices.size(), 510000u - 2);
+}
+
+TEST_F(LoadObj, CutsExponentsOfManyDigitsButNotNames) {
+  write("m.mtl", "newmtl 1e1234567890\nKd 1e-1234567890 2e+00000000001 .5\nNs 1e1234567890\n");
+  const Scene scene = load("mtllib m.mtl\n" + TRIANGLE + "usemtl 1e1234567890\nf 1 2 3\n");
+  ASSERT_EQ(scene.materials.size(), 2u);
+  EXPECT_EQ(scene.materials[1].diffuse, glm::vec3(0, 20, 0.5f));
+  EXPECT_EQ(scene.materials[1].shininess, 1);  // infinite, which is none
+  EXPECT_EQ(scene.material_index, (std::vector<std::uint32_t>{1}));
+  EXPECT_TRUE(scene.warnings.empty());
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <vector>
 
 #include "stages/stages.h"
 
@@ -15,6 +16,10 @@ static_assert(std::min({PRIMITIVE_BOUNDS_TILE, MORTON_TILE, SORT_HISTOGRAM_TILE,
 
 uvec3 tiles(std::uint32_t count, std::uint32_t tile, std::uint32_t rows = 1) {
   return {count / tile + (count % tile != 0), rows, 1};
+}
+
+std::vector<std::uint32_t> lookback_constants(const BuildOptions& options) {
+  return {options.lookback_turns, options.lookback_max_fallbacks, options.lookback_stress};
 }
 
 void append_bounds(Chain& chain, const BuildPlan& plan) {
@@ -53,7 +58,7 @@ void append_sort(Chain& chain, const BuildPlan& plan) {
       chain.run(stages::sort_tile_counts, args, pass_groups);
       chain.run(stages::sort_tile_scan, {status, pass_groups.x, 0}, {1, 1, 1});
     }
-    chain.run(stages::sort_pass, args, pass_groups, {plan.options.lookback_turns});
+    chain.run(stages::sort_pass, args, pass_groups, lookback_constants(plan.options));
   }
 }
 
@@ -82,7 +87,7 @@ void append_round(Chain& chain, const BuildPlan& plan, std::uint32_t round) {
     chain.run_indirect(stages::ploc_tile_scan, {status, chain.at(plan.rounds), round, 0},
                        groups(offsetof(PlocRound, tile_scan_groups)));
   }
-  chain.run_indirect(stages::ploc_merge, merge, merge_groups, {plan.options.lookback_turns});
+  chain.run_indirect(stages::ploc_merge, merge, merge_groups, lookback_constants(plan.options));
 }
 
 void append_ploc(Chain& chain, const BuildPlan& plan) {

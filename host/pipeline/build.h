@@ -15,6 +15,8 @@ struct BuildOptions {
   bool lookback = true;  // false: sort and compaction by reduce, then scan: no workgroup waits for another
   // How long a tile polls its predecessor before it sums it up itself, in turns of LOOKBACK_POLLS.
   std::uint32_t lookback_turns = 16;
+  std::uint32_t lookback_max_fallbacks = 64;  // a tile that would have to sum up more of them gives up
+  std::uint32_t lookback_stress = 0;          // bits of interface/lookback.h, for tests
 };
 
 // A scene's triangles and the tree over them, whoever builds it.

@@ -29,7 +29,7 @@ std::vector<Triangle> scattered_triangles() {
   return triangles;
 }
 
-bool builds_right(Device& device, bool lookback) {
+bool builds_right(Device& device, bool lookback, const std::function<void(std::vector<Step>&)>& fault) {
   BuildOptions options;
   options.radius = 2;
   options.lookback = lookback;
@@ -41,6 +41,7 @@ bool builds_right(Device& device, bool lookback) {
   gpu.upload(plan.triangles, std::span<const Triangle>(triangles));
   Chain gpu_chain = gpu.chain();
   append_build(gpu_chain, plan);
+  if (fault) fault(gpu_chain.steps());
   gpu.record(gpu_chain.steps()).submit_and_wait(limit_seconds);
 
   CpuExecutor cpu(layout);
@@ -56,9 +57,9 @@ bool builds_right(Device& device, bool lookback) {
 
 }  // namespace
 
-bool check_lookback(Device& device) {
-  if (builds_right(device, true)) return true;
-  if (builds_right(device, false)) return false;
+bool check_lookback(Device& device, const std::function<void(std::vector<Step>&)>& fault) {
+  if (builds_right(device, true, fault)) return true;
+  if (builds_right(device, false, fault)) return false;
   throw DeviceError("device '" + device.properties().name + "' (" + device.properties().driver +
                     ") computes a wrong tree in the self-check; it is not used");
 }

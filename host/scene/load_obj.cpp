@@ -1,5 +1,7 @@
 #include "scene/load_obj.h"
 
+#include <fstream>
+#include <iterator>
 #include <sstream>
 
 #include "scene/obj_materials.h"
@@ -44,21 +46,34 @@ tinyobj::callback_t callbacks() {
 
 }  // namespace
 
-Scene load_obj(const std::filesystem::path& path) {
-  ObjText obj = read_obj_text(path);
+Scene parse_obj(std::string text, const std::string& name,
+                const std::function<std::optional<std::string>(const std::string& name)>& read_mtl) {
+  ObjText obj = check_obj_text(std::move(text), name);
   Scene scene;
-  scene.name = printable(path.stem());
   // Ours, not tinyobjloader's: it reads what is no number as 0, and rounds decimals less well.
   scene.positions = std::move(obj.positions);
   scene.warnings = std::move(obj.warnings);
 
   // By callbacks, not LoadObj: that one drops triangles of polygons that it cannot cut, takes quadratic time
   // over large ones, and fails on lines and points with odd indices, which we have no use for.
-  ObjMaterials materials(path, scene.warnings);
+  ObjMaterials materials(read_mtl, scene.warnings);
   Reading reading{.scene = scene, .materials = materials, .polygon = {}};
   std::istringstream stream(std::move(obj.text));
   tinyobj::LoadObjWithCallback(stream, callbacks(), &reading, &materials);
   scene.materials = materials.take();
+  return scene;
+}
+
+Scene load_obj(const std::filesystem::path& path) {
+  const auto read_mtl = [folder = path.parent_path()](const std::string& name) -> std::optional<std::string> {
+    std::error_code error;
+    std::ifstream file;
+    if (std::filesystem::is_regular_file(folder / name, error)) file.open(folder / name, std::ios::binary);
+    if (!file.is_open()) return std::nullopt;
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  Scene scene = parse_obj(read_obj_file(path), printable(path), read_mtl);
+  scene.name = printable(path.stem());
   return scene;
 }
 

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
 
 #include "scene/scene.h"
 
@@ -15,5 +18,10 @@ namespace coppice {
 // one, if the file is missing, a directory, empty or no OBJ at all, or has a face with fewer than three
 // vertices or with an index that is zero, out of range or no number.
 Scene load_obj(const std::filesystem::path& path);
+
+// The same of a text in memory. `name` begins the messages; `read_mtl` gives the text of an MTL file by the
+// name in the OBJ, nothing where there is none. The scene has no name.
+Scene parse_obj(std::string text, const std::string& name,
+                const std::function<std::optional<std::string>(const std::string& name)>& read_mtl);
 
 }  // namespace coppice

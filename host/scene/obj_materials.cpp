@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <sstream>
 
 #include "scene/printable.h"
@@ -36,10 +35,29 @@ Material to_material(const tinyobj::material_t& mtl) {
   return material;
 }
 
+// tinyobjloader overflows an int on exponents of ten digits. Eight are far beyond what a float holds.
+void shorten_exponents(std::string& text) {
+  constexpr std::size_t kept = 8;
+  constexpr const char* blanks = " \t\r\n";
+  std::string_view word;
+  for (std::size_t begin = text.find_first_not_of(blanks); begin < text.size();) {
+    const std::size_t end = std::min(text.find_first_of(blanks, begin), text.size());
+    const bool is_name = word == "newmtl";
+    word = std::string_view(text).substr(begin, end - begin);
+    const std::size_t e = word.find_first_not_of("+-.0123456789");
+    if (!is_name && e > 0 && e < word.size() && (word[e] == 'e' || word[e] == 'E')) {
+      const std::size_t first = std::min(word.find_first_not_of("+-0", e + 1), word.size());
+      const std::size_t last = std::min(word.find_first_not_of("0123456789", first), word.size());
+      for (std::size_t i = first + kept; i < last; ++i) text[begin + i] = ' ';
+    }
+    begin = text.find_first_not_of(blanks, end);
+  }
+}
+
 }  // namespace
 
-ObjMaterials::ObjMaterials(const std::filesystem::path& obj_path, std::vector<std::string>& warnings)
-    : folder_(obj_path.parent_path()), warnings_(warnings) {}
+ObjMaterials::ObjMaterials(ReadMtl read, std::vector<std::string>& warnings)
+    : read_(std::move(read)), warnings_(warnings) {}
 
 bool ObjMaterials::operator()(const std::string& name, std::vector<tinyobj::material_t>*,
                               std::map<std::string, int>*, std::string*, std::string*) {
@@ -47,11 +65,8 @@ bool ObjMaterials::operator()(const std::string& name, std::vector<tinyobj::mate
   // line.
   constexpr bool ask_for_the_next = false;
 
-  std::error_code error;
-  const std::filesystem::path path = folder_ / name;
-  std::ifstream file;
-  if (std::filesystem::is_regular_file(path, error)) file.open(path, std::ios::binary);
-  if (!file.is_open()) {
+  std::optional<std::string> text = read_(name);
+  if (!text) {
     warn("material file '" + printable(std::string_view(name)) + "' not found");
     return ask_for_the_next;
   }
@@ -59,6 +74,8 @@ bool ObjMaterials::operator()(const std::string& name, std::vector<tinyobj::mate
   std::vector<tinyobj::material_t> read;
   std::map<std::string, int> ignored_map;
   std::string mtl_warnings, ignored_error;
+  shorten_exponents(*text);
+  std::istringstream file(std::move(*text));
   tinyobj::LoadMtl(&ignored_map, &read, &file, &mtl_warnings, &ignored_error);
   std::size_t count = 0;
   for (const tinyobj::material_t& mtl : read) {

@@ -2,8 +2,9 @@
 
 #include <tiny_obj_loader.h>
 
-#include <filesystem>
+#include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,11 @@ namespace coppice {
 // warning.
 class ObjMaterials : public tinyobj::MaterialReader {
  public:
-  // `obj_path` is the file that the names are relative to; warnings are appended to `warnings`.
-  ObjMaterials(const std::filesystem::path& obj_path, std::vector<std::string>& warnings);
+  // The text of the file of that name, nothing where there is none.
+  using ReadMtl = std::function<std::optional<std::string>(const std::string& name)>;
+
+  // Warnings are appended to `warnings`.
+  ObjMaterials(ReadMtl read, std::vector<std::string>& warnings);
 
   // tinyobjloader's hook, called for each file that `mtllib` names.
   bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
@@ -32,7 +36,7 @@ class ObjMaterials : public tinyobj::MaterialReader {
  private:
   void warn(std::string line);
 
-  std::filesystem::path folder_;
+  ReadMtl read_;
   std::vector<std::string>& warnings_;
   std::vector<Material> materials_ = {Material{}};
   std::map<std::string, std::uint32_t, std::less<>> index_of_;

@@ -19,23 +19,6 @@
 namespace coppice {
 namespace {
 
-std::string read_file(const std::filesystem::path& path) {
-  const std::string name = printable(path);
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw InputError(name + ": no such file");
-  if (std::filesystem::is_directory(status)) throw InputError(name + ": is a directory, not an OBJ file");
-  if (!std::filesystem::is_regular_file(status)) throw InputError(name + ": not a regular file");
-
-  const auto size = std::filesystem::file_size(path, error);
-  std::ifstream file(path, std::ios::binary);
-  if (error || !file) throw InputError(name + ": cannot open: " + std::strerror(errno));
-  if (size == 0) throw InputError(name + ": empty file");
-  std::string text(size, '\0');
-  if (!file.read(text.data(), static_cast<std::streamsize>(size))) throw InputError(name + ": cannot read");
-  return text;
-}
-
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
 
 // The blank-separated words of a line.
@@ -109,8 +92,7 @@ class ObjChecker {
       while (end < text.size() && text[end] != '\n' && text[end] != '\r') ++end;
       if (end == text.size() || end == begin || text[end - 1] != '\\' || is_comment) return end;
       const std::size_t next_line = end + (text.compare(end, 2, "\r\n") == 0 ? 2 : 1);
-      std::fill(text.begin() + static_cast<std::ptrdiff_t>(end - 1),
-                text.begin() + static_cast<std::ptrdiff_t>(next_line), ' ');
+      blank_out(end - 1, next_line);
       end = next_line;
       ++lines_in_statement_;
     }
@@ -120,14 +102,27 @@ class ObjChecker {
     Words words(std::string_view(obj_.text).substr(begin, end - begin));
     const std::string_view keyword = words.next();
     if (keyword.empty() || keyword[0] == '#') return;
-    if (keyword == "v") {
-      read_vertex(words);
-    } else if (keyword == "f") {
-      check_face(words, end);
-    }
     if (!recognised_) {
       recognised_ = std::find(STATEMENTS.begin(), STATEMENTS.end(), keyword) != STATEMENTS.end();
     }
+    // tinyobjloader overflows an int on exponents of ten digits, so it sees no numbers but indices.
+    if (keyword == "v") {
+      read_vertex(words);
+      blank_out(offset_of(keyword) + 1, end);
+    } else if (keyword == "vn" || keyword == "vt") {
+      blank_out(begin, end);
+    } else if (keyword == "f") {
+      check_face(words, end);
+    }
+  }
+
+  std::size_t offset_of(std::string_view word) const {
+    return static_cast<std::size_t>(word.data() - obj_.text.data());
+  }
+
+  void blank_out(std::size_t begin, std::size_t end) {
+    std::fill(obj_.text.begin() + static_cast<std::ptrdiff_t>(begin),
+              obj_.text.begin() + static_cast<std::ptrdiff_t>(end), ' ');
   }
 
   void read_vertex(Words& words) {
@@ -147,9 +142,7 @@ class ObjChecker {
     std::size_t vertex_count = 0;
     for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
       if (word[0] == '#') {
-        const auto comment = word.data() - obj_.text.data();
-        std::fill(obj_.text.begin() + comment, obj_.text.begin() + static_cast<std::ptrdiff_t>(line_end),
-                  ' ');
+        blank_out(offset_of(word), line_end);
         break;
       }
       check_index(word);
@@ -162,9 +155,11 @@ class ObjChecker {
     ++face_count_;
   }
 
-  // `word` is i, i/j, i//k or i/j/k; only i is looked at, for normals and texture coordinates are not used.
+  // `word` is i, i/j, i//k or i/j/k; of these only i is looked at, for normals and texture coordinates are
+  // not used. With another slash tinyobjloader would take the rest for an index 0.
   void check_index(std::string_view word) {
     const std::string_view digits = word.substr(0, word.find('/'));
+    if (std::count(word.begin(), word.end(), '/') > 2) fail("'" + printable(word) + "' is no vertex index");
     std::int32_t index = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
     if (end != digits.data() + digits.size() || error == std::errc::invalid_argument) {
@@ -221,10 +216,27 @@ class ObjChecker {
 
 }  // namespace
 
-ObjText read_obj_text(const std::filesystem::path& path) {
+std::string read_obj_file(const std::filesystem::path& path) {
+  const std::string name = printable(path);
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) throw InputError(name + ": no such file");
+  if (std::filesystem::is_directory(status)) throw InputError(name + ": is a directory, not an OBJ file");
+  if (!std::filesystem::is_regular_file(status)) throw InputError(name + ": not a regular file");
+
+  const auto size = std::filesystem::file_size(path, error);
+  std::ifstream file(path, std::ios::binary);
+  if (error || !file) throw InputError(name + ": cannot open: " + std::strerror(errno));
+  if (size == 0) throw InputError(name + ": empty file");
+  std::string text(size, '\0');
+  if (!file.read(text.data(), static_cast<std::streamsize>(size))) throw InputError(name + ": cannot read");
+  return text;
+}
+
+ObjText check_obj_text(std::string text, const std::string& name) {
   ObjText obj;
-  obj.text = read_file(path);
-  ObjChecker(printable(path), obj).check();
+  obj.text = std::move(text);
+  ObjChecker(name, obj).check();
   return obj;
 }
 

@@ -10,13 +10,16 @@ namespace coppice {
 // The text of an OBJ file that has been checked: every face has at least three vertices, every vertex index
 // is within the file, every vertex has three coordinates. A parser that trusts its input may read it.
 struct ObjText {
-  std::string text;  // continued lines joined, comments after a face blanked out
+  std::string text;  // continued lines joined; coordinates, normals and comments after a face blanked out
   std::vector<glm::vec3>
       positions;  // of the `v` statements in order; non-finite where the text is no finite float
   std::vector<std::string> warnings;  // one line each
 };
 
-// Reads and checks a file in one pass. Throws InputError as load_obj says.
-ObjText read_obj_text(const std::filesystem::path& path);
+// The bytes of a file that may be an OBJ. Throws InputError as load_obj says.
+std::string read_obj_file(const std::filesystem::path& path);
+
+// Checks a text in one pass. `name` begins the messages. Throws InputError as load_obj says.
+ObjText check_obj_text(std::string text, const std::string& name);
 
 }  // namespace coppice

@@ -54,6 +54,7 @@ void ploc_finish(const PlocFinishArgs& args) {
   }
   state.round_count = index;
   if (clusters.size() != std::min(state.active_count, 1u)) state.error_word |= ERROR_PLOC_ROUNDS;
+  if (state.error_word != 0) state.active_count = 0;
   if (clusters.size() == 1) args.nodes[0] = clusters[0];
 }
 
