@@ -9,6 +9,8 @@
 
 #include <cerrno>
 #include <chrono>
+#include <cstdio>
+#include <memory>
 #include <stdexcept>
 
 extern char** environ;
@@ -17,7 +19,7 @@ namespace coppice {
 
 namespace {
 
-pid_t spawn_self(const std::vector<std::string>& arguments, int output) {
+pid_t spawn_self(const std::vector<std::string>& arguments, int output, int errors) {
   std::vector<std::string> words = {"coppice"};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
@@ -27,7 +29,7 @@ pid_t spawn_self(const std::vector<std::string>& arguments, int output) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, output, STDOUT_FILENO);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_adddup2(&actions, errors, STDERR_FILENO);
   pid_t child = 0;
   const int error = posix_spawn(&child, "/proc/self/exe", &actions, nullptr, argv.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
@@ -54,15 +56,26 @@ bool read_all(int input, double limit_seconds, std::string& output) {
   }
 }
 
+std::string last_line(std::FILE* file) {
+  std::rewind(file);
+  std::string line;
+  char text[1024];
+  while (std::fgets(text, sizeof text, file)) line = text;
+  while (!line.empty() && line.back() == '\n') line.pop_back();
+  return line;
+}
+
 }  // namespace
 
 ChildResult run_self(const std::vector<std::string>& arguments, double limit_seconds) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> errors(std::tmpfile(), std::fclose);
+  if (!errors) throw std::runtime_error("cannot open a temporary file");
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error("cannot open a pipe");
   ChildResult result;
   pid_t child = 0;
   try {
-    child = spawn_self(arguments, ends[1]);
+    child = spawn_self(arguments, ends[1], fileno(errors.get()));
   } catch (...) {
     close(ends[0]);
     close(ends[1]);
@@ -75,6 +88,7 @@ ChildResult run_self(const std::vector<std::string>& arguments, double limit_sec
   int status = 0;
   waitpid(child, &status, 0);
   result.exit_status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  result.error = last_line(errors.get());
   return result;
 }
 

@@ -34,6 +34,8 @@ ComparisonRow measure(const std::string& scene, const std::string& builder, cons
   add("--size", std::to_string(options.width) + "x" + std::to_string(options.height));
   add("--runs", std::to_string(options.frames));
   add("--radius", std::to_string(options.radius));
+  add("--triangle-test", options.triangle_test);
+  add("--box-test", options.box_test);
   add("--morton-bits", options.morton_bits);
   if (!options.device.empty()) add("--device", options.device);
   const ChildResult child = run_self(arguments, options.timeout_seconds);
@@ -44,7 +46,9 @@ ComparisonRow measure(const std::string& scene, const std::string& builder, cons
     std::snprintf(text, sizeof text, "over %g s", options.timeout_seconds);
     row.infeasible = text;
   } else if (child.exit_status != 0) {
-    row.infeasible = "failed";
+    constexpr std::string_view prefix = "coppice: ";
+    const std::string_view line = child.error;
+    row.infeasible = "failed: " + std::string(line.substr(line.starts_with(prefix) ? prefix.size() : 0));
   } else {
     render = Json::parse(child.output);
     row = comparison_row(builder, render);
