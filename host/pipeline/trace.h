@@ -18,8 +18,8 @@ struct TraceOptions {
   std::uint32_t visits_per_turn = 1;
   // Entries of the traversal stack; a tree that is higher is refused by name.
   std::uint32_t stack_entries = TRACE_STACK_LIMIT;
-  std::uint32_t triangle_test = TRIANGLE_FAST;
-  std::uint32_t box_test = BOX_FAST;
+  std::uint32_t triangle_test = TRIANGLE_WATERTIGHT;
+  std::uint32_t box_test = BOX_ROBUST;
   bool directional_light = true;  // what the scene calls for
 };
 
