@@ -1,9 +1,12 @@
+#include <malloc.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <limits>
 #include <new>
 
 #include "apps/options.h"
@@ -213,6 +216,10 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // Memory that one build gives back serves the next: fetching it from the kernel anew, page by page, takes
+  // up to half of a build of a million triangles.
+  mallopt(M_MMAP_MAX, 0);
+  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
   try {
     return run(argc, argv);
   } catch (const std::bad_alloc&) {
