@@ -34,7 +34,7 @@ std::string factor(double value, double best) {
   return value > 0 && best > 0 ? format("%.2f", value / best) : "-";
 }
 
-constexpr double plot_width = 720, plot_height = 480, plot_margin = 60;
+constexpr double plot_width = 960, plot_height = 720, plot_margin = 60;
 
 struct Axis {
   double low = std::numeric_limits<double>::infinity(), high = 0;
@@ -57,6 +57,37 @@ double plot_x(const Axis& axis, double value) {
 double plot_y(const Axis& axis, double value) {
   return plot_height - plot_margin - axis.position(value) * (plot_height - 2 * plot_margin);
 }
+
+// Finds each label a place near its point where it covers no other label.
+class Labels {
+ public:
+  // The left end of the label's base line.
+  std::pair<double, double> place(double x, double y, const std::string& text) {
+    const double width = 6.2 * static_cast<double>(text.size());
+    for (int step = 0; step < 24; ++step) {
+      const double distance = height * ((step + 2) / 4);
+      const double left = step % 2 == 0 ? x + 7 : x - 7 - width;
+      const double base = y + 4 + (step / 2 % 2 == 0 ? distance : -distance);
+      const Box box{left, base - height, left + width, base};
+      if (std::ranges::none_of(taken_, [&](const Box& other) { return box.covers(other); }) || step == 23) {
+        taken_.push_back(box);
+        return {left, base};
+      }
+    }
+    return {x, y};
+  }
+  void keep_clear(double x, double y) { taken_.push_back({x - 3, y - 3, x + 3, y + 3}); }
+
+ private:
+  static constexpr double height = 12;
+  struct Box {
+    double left, top, right, bottom;
+    bool covers(const Box& other) const {
+      return left < other.right && other.left < right && top < other.bottom && other.top < bottom;
+    }
+  };
+  std::vector<Box> taken_;
+};
 
 std::string plot_grid(const Axis& build, const Axis& frame) {
   std::string svg;
@@ -173,6 +204,13 @@ std::string to_svg(const std::vector<SceneComparison>& scenes) {
     frame.round_to_decades();
     svg += plot_grid(build, frame);
   }
+  const auto has_point = [](const ComparisonRow& row) { return row.infeasible.empty() && row.build_ms > 0; };
+  Labels labels;
+  for (const SceneComparison& scene : scenes) {
+    for (const ComparisonRow& row : scene.rows) {
+      if (has_point(row)) labels.keep_clear(plot_x(build, row.build_ms), plot_y(frame, row.frame_ms));
+    }
+  }
   std::size_t index = 0;
   for (const SceneComparison& scene : scenes) {
     const char* const colour = colours[index % std::size(colours)];
@@ -180,11 +218,14 @@ std::string to_svg(const std::vector<SceneComparison>& scenes) {
                   plot_margin - 34 + 13 * static_cast<double>(index), colour, scene.scene.c_str());
     ++index;
     for (const ComparisonRow& row : scene.rows) {
-      if (!row.infeasible.empty() || row.build_ms <= 0) continue;
+      if (!has_point(row)) continue;
       const double x = plot_x(build, row.build_ms), y = plot_y(frame, row.frame_ms);
-      svg +=
-          format("<circle cx='%.1f' cy='%.1f' r='4' fill='%s'/><text x='%.1f' y='%.1f' fill='%s'>%s</text>\n",
-                 x, y, colour, x + 6, y + 4, colour, row.builder.c_str());
+      const auto [label_x, label_y] = labels.place(x, y, row.builder);
+      svg += format(
+          "<circle cx='%.1f' cy='%.1f' r='4' fill='%s'/><path d='M%.1f %.1fL%.1f %.1f' stroke='%s' "
+          "stroke-width='0.5'/><text x='%.1f' y='%.1f' fill='%s'>%s</text>\n",
+          x, y, colour, x, y, label_x + (label_x < x ? 6.2 * static_cast<double>(row.builder.size()) : 0),
+          label_y - 4, colour, label_x, label_y, colour, row.builder.c_str());
     }
   }
   return svg + "</svg>\n";

@@ -76,6 +76,14 @@ void add_builder(CLI::App& command, Options& options) {
       ->capture_default_str();
 }
 
+void add_leaf_size(CLI::App& command, Options& options) {
+  command
+      .add_option("--leaf-size", options.leaf_size,
+                  "gd16-early: the most references that are not split any further")
+      ->check(CLI::Range(1u, 1u << 20))
+      ->capture_default_str();
+}
+
 void add_ploc(CLI::App& command, Options& options) {
   command.add_option("--radius", options.radius, "search radius of PLOC")
       ->check(CLI::Range(1u, coppice::PLOC_MAX_RADIUS))
@@ -177,6 +185,7 @@ int run(int argc, char** argv) {
     command->add_option("--runs", options.frames, "build and trace so many times; times are medians")
         ->check(CLI::Range(1u, 10000u))
         ->capture_default_str();
+  for (CLI::App* const command : {render, build, compare}) add_leaf_size(*command, options);
   for (CLI::App* const command : {render, build}) add_builder(*command, options);
   for (CLI::App* const command : {render, build, lockstep}) {
     add_scene(*command, options);

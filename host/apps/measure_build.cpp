@@ -34,6 +34,7 @@ BuildReport report_for(const Options& options, const Scene& scene, std::span<con
   report.inactive = count_inactive(scene);
   report.builder = options.builder;
   report.radius = options.radius;
+  report.leaf_size = options.leaf_size;
   report.morton_bits = morton_bits_for(options, triangles);
   const bool sorts = options.builder == "gpu-ploc" || find_cpu_builder(options.builder).uses_morton_codes;
   if (sorts && options.morton_bits == "auto" && report.morton_bits == 60) {
@@ -98,7 +99,7 @@ BuildReport measure_cpu_build(std::span<const Triangle> triangles, BuildReport r
   Progress progress("building", runs);
   for (std::uint32_t run = 0; run < runs; ++run) {
     const auto start = std::chrono::steady_clock::now();
-    bvh = builder.build(triangles, {report.radius, report.morton_bits});
+    bvh = builder.build(triangles, {report.radius, report.morton_bits, report.leaf_size});
     build_ms.push_back(
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     progress.step();

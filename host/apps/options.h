@@ -15,6 +15,7 @@ struct Options {
   bool validate = false;
 
   std::string builder = "gpu-ploc";
+  std::uint32_t leaf_size = 8;  // of gd16-early
   std::uint32_t radius = 16;
   std::string morton_bits = "auto";  // auto, 30, 60
   std::uint32_t runs = 5;            // of `build`

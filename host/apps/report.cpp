@@ -102,6 +102,7 @@ Json to_json(const BuildReport& report) {
     json["dispatches"] = report.dispatches;
     json["device_bytes"] = report.device_bytes;
   }
+  if (report.builder == "gd16-early") json["leaf_size"] = report.leaf_size;
   json["rounds"] = report.rounds;
   json["rounds_bound"] = report.rounds_bound;
   json["nodes"] = report.quality.nodes;

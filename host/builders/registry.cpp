@@ -30,7 +30,10 @@ std::span<const CpuBuilder> cpu_builders() {
       {"gd16", "Ganestam and Doggett 2016, spatial splits", [](Triangles t, Config) { return build_gd16(t); },
        true},
       {"gd16-early", "the same with early termination",
-       [](Triangles t, Config) { return build_gd16(t, {.early_termination = true}); }, true},
+       [](Triangles t, Config c) {
+         return build_gd16(t, {.early_termination = true, .leaf_references = c.leaf_size});
+       },
+       true},
       {"sbvh", "Stich, Friedrich and Dietrich 2009, spatial splits",
        [](Triangles t, Config) { return build_sbvh(t); }, true},
       {"lbvh", "linear BVH",

@@ -11,6 +11,7 @@ namespace coppice {
 struct BuilderConfig {
   std::uint32_t radius = 16;
   std::uint32_t morton_bits = 30;
+  std::uint32_t leaf_size = 8;  // of gd16-early: the most references that are not split any further
 };
 
 // A CPU builder as the commands know it.
