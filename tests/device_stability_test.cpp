@@ -25,7 +25,7 @@ class Stability : public Command {
 TEST_F(Stability, EveryHardCase) {
   const nlohmann::json report = report_of("--triangles 300 --rays 40 --leak-rays 0");
   ASSERT_GE(report["cases"].size(), 30u);
-  std::uint64_t hits = 0, fast_faults = 0;
+  std::uint64_t hits = 0, fast_faults = 0, fast_at_edges = 0, accurate_at_edges = 0;
   for (const nlohmann::json& one : report["cases"]) {
     const std::string name = one["case"];
     EXPECT_TRUE(one["passes"]) << name;
@@ -40,6 +40,8 @@ TEST_F(Stability, EveryHardCase) {
       if (variant["triangle_test"] == "fast") {
         fast_faults += variant["missed"].get<std::uint64_t>() + variant["false_hits"].get<std::uint64_t>();
       }
+      (is_accurate(variant) ? accurate_at_edges : fast_at_edges) +=
+          variant["missed_at_edges"].get<std::uint64_t>();
       if (!is_accurate(variant)) continue;
       for (const auto& [kind, rays] : variant["kinds"].items()) {
         EXPECT_EQ(rays["missed"], 0) << name << ", " << kind << ": " << rays["example"];
@@ -50,11 +52,14 @@ TEST_F(Stability, EveryHardCase) {
     }
   }
   EXPECT_GT(hits, 10000u);
+  // At the border of an open surface rounding may lose a hit; of the three other variants each loses more.
+  EXPECT_LT(3 * accurate_at_edges, fast_at_edges);
   EXPECT_GT(fast_faults, 0u);  // or the rays were not hard
 }
 
 TEST_F(Stability, ClosedMeshesDoNotLeak) {
-  const nlohmann::json report = report_of("--cases room --triangles 14 --rays 1 --leak-rays 20000");
+  const nlohmann::json report =
+      report_of("--cases sphere,far-sphere,cylinder,hard:room --rays 1 --leak-rays 20000");
   ASSERT_EQ(report["leaks"].size(), 4u * 5u * 4u);  // meshes, scales, variants
   std::uint64_t leaks_of_fast = 0;
   for (const nlohmann::json& leak : report["leaks"]) {

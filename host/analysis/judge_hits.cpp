@@ -85,24 +85,7 @@ class Judge {
     for (std::uint64_t i = range.begin(); i < range.end(); ++i) judge(i);
   }
 
-  void join(const Judge& other) {
-    const HitVerdicts& more = other.verdicts;
-    verdicts.rays += more.rays;
-    verdicts.hits += more.hits;
-    verdicts.exact_hits += more.exact_hits;
-    verdicts.missed += more.missed;
-    verdicts.missed_at_edges += more.missed_at_edges;
-    verdicts.behind_edges += more.behind_edges;
-    verdicts.false_hits += more.false_hits;
-    verdicts.false_on_degenerate += more.false_on_degenerate;
-    verdicts.other_triangle += more.other_triangle;
-    keep_first(verdicts.example_missed, more.example_missed);
-    keep_first(verdicts.example_missed_at_edges, more.example_missed_at_edges);
-    keep_first(verdicts.example_false, more.example_false);
-    keep_worst(verdicts.worst_t_ulps, verdicts.example_t, more.worst_t_ulps, more.example_t);
-    keep_worst(verdicts.worst_uv_ulps, verdicts.example_uv, more.worst_uv_ulps, more.example_uv);
-    verdicts.worst_t_scaled = std::max(verdicts.worst_t_scaled, more.worst_t_scaled);
-  }
+  void join(const Judge& other) { verdicts += other.verdicts; }
 
   HitVerdicts verdicts;
 
@@ -171,6 +154,25 @@ std::string_view why_false(std::span<const Triangle> triangles, const Ray& ray, 
   if (is_exactly_degenerate(triangle)) return ON_DEGENERATE;
   const ExactLine line(ray);
   return why_false_there(line, HitRoom(line, triangle), hit);
+}
+
+HitVerdicts& HitVerdicts::operator+=(const HitVerdicts& other) {
+  rays += other.rays;
+  hits += other.hits;
+  exact_hits += other.exact_hits;
+  missed += other.missed;
+  missed_at_edges += other.missed_at_edges;
+  behind_edges += other.behind_edges;
+  false_hits += other.false_hits;
+  false_on_degenerate += other.false_on_degenerate;
+  other_triangle += other.other_triangle;
+  keep_first(example_missed, other.example_missed);
+  keep_first(example_missed_at_edges, other.example_missed_at_edges);
+  keep_first(example_false, other.example_false);
+  keep_worst(worst_t_ulps, example_t, other.worst_t_ulps, other.example_t);
+  keep_worst(worst_uv_ulps, example_uv, other.worst_uv_ulps, other.example_uv);
+  worst_t_scaled = std::max(worst_t_scaled, other.worst_t_scaled);
+  return *this;
 }
 
 HitVerdicts judge_hits(std::span<const Node> nodes, std::span<const Triangle> triangles,

@@ -78,6 +78,10 @@ struct HitVerdicts {
   std::uint64_t example_false = NO_RAY;
   std::uint64_t example_t = NO_RAY;  // of worst_t_ulps
   std::uint64_t example_uv = NO_RAY;
+
+  // Adds counts and keeps the worst; of examples the first, so both must number rays alike for those to mean
+  // anything.
+  HitVerdicts& operator+=(const HitVerdicts& other);
 };
 
 // hits[i] is what was reported for rays[i]; a miss has triangle = NO_TRIANGLE, its other members are not

@@ -4,6 +4,7 @@
 #include "apps/progress.h"
 #include "apps/report.h"
 #include "apps/stability.h"
+#include "scene/input_error.h"
 
 namespace coppice {
 
@@ -114,11 +115,7 @@ void print_kinds(std::span<const StabilityCase> cases) {
       for (const RayResult& kind : one.variants[v].kinds) {
         auto sum = std::ranges::find(sums, kind.kind, &RayResult::kind);
         if (sum == sums.end()) sum = sums.insert(sums.end(), {kind.kind, {}});
-        sum->verdicts.rays += kind.verdicts.rays;
-        sum->verdicts.hits += kind.verdicts.hits;
-        sum->verdicts.missed += kind.verdicts.missed;
-        sum->verdicts.missed_at_edges += kind.verdicts.missed_at_edges;
-        sum->verdicts.false_hits += kind.verdicts.false_hits;
+        sum->verdicts += kind.verdicts;
         sum->leaks += kind.leaks;
       }
     }
@@ -144,16 +141,25 @@ void print_leaks(std::span<const LeakCount> leaks) {
   }
 }
 
-std::vector<StabilityCase> examine_cases(CheckedDevice& device, const Options& options,
-                                         const StabilityOptions& stability) {
-  std::vector<std::string> names = options.cases;
-  if (names.empty()) {
-    for (const HardCase& hard_case : hard_cases()) names.emplace_back(hard_case.name);
+std::vector<const HardCase*> chosen_cases(const Options& options) {
+  std::vector<const HardCase*> cases;
+  for (std::string_view name : options.cases) {
+    if (name.starts_with("hard:")) name.remove_prefix(5);
+    cases.push_back(find_hard_case(name));
+    if (!cases.back()) throw InputError("--cases: unknown hard case '" + std::string(name) + "'");
   }
+  if (cases.empty()) {
+    for (const HardCase& hard_case : hard_cases()) cases.push_back(&hard_case);
+  }
+  return cases;
+}
+
+std::vector<StabilityCase> examine_cases(CheckedDevice& device, std::span<const HardCase* const> chosen,
+                                         const Options& options, const StabilityOptions& stability) {
   std::vector<StabilityCase> cases;
-  Progress progress("hard cases", static_cast<std::uint32_t>(names.size()));
-  for (const std::string& name : names) {
-    cases.push_back(examine_case(device, name, options, stability));
+  Progress progress("hard cases", static_cast<std::uint32_t>(chosen.size()));
+  for (const HardCase* const hard_case : chosen) {
+    cases.push_back(examine_case(device, *hard_case, options, stability));
     progress.step();
   }
   return cases;
@@ -162,11 +168,12 @@ std::vector<StabilityCase> examine_cases(CheckedDevice& device, const Options& o
 }  // namespace
 
 int run_stability(const Options& options) {
+  const std::vector<const HardCase*> chosen = chosen_cases(options);
   CheckedDevice device = open_device(options);
   const StabilityOptions stability{options.most_triangles, options.rays_of_a_kind, options.seed};
-  const std::vector<StabilityCase> cases = examine_cases(device, options, stability);
+  const std::vector<StabilityCase> cases = examine_cases(device, chosen, options, stability);
   std::vector<LeakCount> leaks;
-  if (options.leak_rays) leaks = count_leaks(device, options.leak_rays, options, stability);
+  if (options.leak_rays) leaks = count_leaks(device, chosen, options.leak_rays, options, stability);
   const double nan_cost = cost_of_nan_rays(device, options);
 
   std::uint64_t failed = std::ranges::count_if(cases, [](const auto& one) { return !one.passes(); });

@@ -1,5 +1,7 @@
 #include "apps/frame.h"
 
+#include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <cstdio>
 #include <glm/geometric.hpp>
@@ -45,9 +47,16 @@ Film make_film(const Scene& scene, std::span<const float> given, std::uint32_t w
                std::uint32_t samples) {
   Camera camera = frame_scene(scene, static_cast<float>(width) / static_cast<float>(height));
   if (!given.empty()) {
-    const float scale = std::ldexp(1.0f, scene.scale_exponent);
-    camera.position = vec3(given[0], given[1], given[2]) * scale;
-    camera.target = vec3(given[3], given[4], given[5]) * scale;
+    const auto scaled = [&](std::size_t first) {
+      vec3 point;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double coordinate = std::ldexp(double{given[first + axis]}, scene.scale_exponent);
+        point[static_cast<int>(axis)] = static_cast<float>(std::clamp<double>(coordinate, -FLT_MAX, FLT_MAX));
+      }
+      return point;
+    };
+    camera.position = scaled(0);
+    camera.target = scaled(3);
     camera.up = {0, 1, 0};
     if (given.size() > 6) camera.vertical_fov_degrees = given[6];
   }

@@ -1,4 +1,6 @@
+#if __has_include(<malloc.h>)
 #include <malloc.h>
+#endif
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -138,7 +140,11 @@ void add_stability(CLI::App& command, Options& options) {
                   "rays from inside of each closed mesh at each of five scales; 0: none")
       ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 40))
       ->capture_default_str();
-  command.add_option("--seed", options.seed)->capture_default_str();
+  command.add_option("--seed", options.seed)
+      ->check([](const std::string& text) {
+        return text.starts_with('-') ? "'" + text + "' is no number from 0 to 2^64 - 1" : std::string();
+      })
+      ->capture_default_str();
   add_ploc(command, options);
   add_device(command, options);
 }
@@ -227,8 +233,10 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   // Memory that one build gives back serves the next: fetching it from the kernel anew, page by page, takes
   // up to half of a build of a million triangles.
+#ifdef M_MMAP_MAX
   mallopt(M_MMAP_MAX, 0);
   mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+#endif
   try {
     return run(argc, argv);
   } catch (const std::bad_alloc&) {

@@ -64,8 +64,8 @@ struct StabilityOptions {
 };
 
 // Builds the hard case on the device and by the twins in lockstep, then traces every kind of hard rays with
-// every variant by both, and judges the device's hits. Throws InputError for an unknown case.
-StabilityCase examine_case(CheckedDevice& device, std::string_view name, const Options& options,
+// every variant by both, and judges the device's hits.
+StabilityCase examine_case(CheckedDevice& device, const HardCase& hard_case, const Options& options,
                            const StabilityOptions& stability);
 
 // Rays from inside of a closed mesh that must all hit.
@@ -77,8 +77,10 @@ struct LeakCount {
   double seconds = 0;
 };
 
-// Shoots `rays` rays at corners, edges and inner points of the closed hard cases, at scales from 1e-6 to 1e6.
-std::vector<LeakCount> count_leaks(CheckedDevice& device, std::uint64_t rays, const Options& options,
+// Shoots `rays` rays at corners, edges and inner points of each closed one of the cases, at scales from 1e-6
+// to 1e6, from random points around its centre.
+std::vector<LeakCount> count_leaks(CheckedDevice& device, std::span<const HardCase* const> cases,
+                                   std::uint64_t rays, const Options& options,
                                    const StabilityOptions& stability);
 
 // The time of rays with a NaN as a multiple of that of random rays; median of five pairs of runs.

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 
 #include "analysis/hard_rays.h"
 #include "apps/progress.h"
@@ -6,6 +7,7 @@
 #include "apps/report.h"
 #include "apps/stability.h"
 #include "builders/ploc.h"
+#include "scene/random.h"
 
 namespace coppice {
 
@@ -20,6 +22,22 @@ TraceOptions tree_options(const CheckedDevice& device, const Options& options,
   trace_options.triangle_test = variant.triangle_test;
   trace_options.box_test = variant.box_test;
   return trace_options;
+}
+
+// From 16 random points in the middle eighth of the scene's box, which is inside of every closed case.
+std::vector<Ray> rays_from_inside(const Node& root, std::span<const Triangle> triangles, std::uint32_t count,
+                                  std::uint64_t seed) {
+  constexpr std::uint32_t points = 16;
+  Random random(seed);
+  std::vector<Ray> rays;
+  for (std::uint32_t k = 0; k < points; ++k) {
+    const vec3 offset = random.in_cube();
+    const vec3 point = centre_of(root) + offset * (root.box_max - root.box_min) * 0.0625f;
+    const std::uint32_t share = count * (k + 1ull) / points - count * std::uint64_t{k} / points;
+    const std::vector<Ray> more = inside_rays(point, triangles, share, seed + k);
+    rays.insert(rays.end(), more.begin(), more.end());
+  }
+  return rays;
 }
 
 // A row for each variant; all get the same rays.
@@ -37,8 +55,7 @@ std::vector<LeakCount> count_leaks(CheckedDevice& device, const HardCase& hard_c
   }
   for (std::uint64_t first = 0; first < rays; first += most_rays_at_once) {
     const auto count = static_cast<std::uint32_t>(std::min(rays - first, most_rays_at_once));
-    const std::vector<Ray> batch =
-        inside_rays(centre_of(bvh.nodes[0]), triangles, count, stability.seed + first);
+    const std::vector<Ray> batch = rays_from_inside(bvh.nodes[0], triangles, count, stability.seed + first);
     for (LeakCount& leak : counts) {
       const TracedRays traced = tracing.on_device(batch, tree_options(device, options, *leak.variant));
       if (!traced.error.empty()) throw DeviceError(traced.error);
@@ -52,16 +69,18 @@ std::vector<LeakCount> count_leaks(CheckedDevice& device, const HardCase& hard_c
 
 }  // namespace
 
-std::vector<LeakCount> count_leaks(CheckedDevice& device, std::uint64_t rays, const Options& options,
+std::vector<LeakCount> count_leaks(CheckedDevice& device, std::span<const HardCase* const> cases,
+                                   std::uint64_t rays, const Options& options,
                                    const StabilityOptions& stability) {
   const std::vector<double> scales = {1e-6, 1e-3, 1.0, 1e3, 1e6};
   std::vector<LeakCount> all;
-  const auto closed = static_cast<std::uint32_t>(std::ranges::count_if(hard_cases(), &HardCase::closed));
+  const auto closed = static_cast<std::uint32_t>(
+      std::ranges::count_if(cases, [](const HardCase* one) { return one->closed; }));
   Progress progress("closed meshes", closed * static_cast<std::uint32_t>(scales.size()));
-  for (const HardCase& hard_case : hard_cases()) {
-    if (!hard_case.closed) continue;
+  for (const HardCase* const hard_case : cases) {
+    if (!hard_case->closed) continue;
     for (const double scale : scales) {
-      const std::vector<LeakCount> counts = count_leaks(device, hard_case, scale, rays, options, stability);
+      const std::vector<LeakCount> counts = count_leaks(device, *hard_case, scale, rays, options, stability);
       all.insert(all.end(), counts.begin(), counts.end());
       progress.step();
     }

@@ -29,8 +29,9 @@ std::vector<SceneListing> list_hard_scenes();
 
 // Opens what the user named: the path of an .obj file, "grove", "scatter[:N]", "terrain[:N]" or
 // "hard:CASE[:N[:SEED]]", with SEED a decimal number below 2^64, 1 if not given. A built-in name wins over a
-// file of the same name ("./grove" names the file). The scene is brought into range (bring_into_range). Throws
-// InputError where nothing answers to the name, N or SEED is out of range, or the file cannot be loaded.
+// file of the same name ("./grove" names the file). The scene is brought into range (bring_into_range).
+// Throws InputError where nothing answers to the name, N or SEED is out of range, or the file cannot be
+// loaded.
 Scene open_scene(const std::string& spec);
 
 }  // namespace coppice

@@ -67,12 +67,7 @@ Sides sides_of(const Corner& a, const Corner& b, const Corner& c, Difference dif
 void meet_watertight(const TraceRay& ray, const Triangle& triangle, uint index, Hit& hit) {
   Corner corners[3] = {sheared(ray, triangle.a), sheared(ray, triangle.b), sheared(ray, triangle.c)};
   float size = 0;
-  for (const Corner& corner : corners) {
-    // A NaN stays: no comparison with it is true, and the maximum is taken by negation.
-    for (const float x : {corner.x, corner.y}) {
-      if (!(std::fabs(x) <= size)) size = std::fabs(x);
-    }
-  }
+  for (const Corner& corner : corners) size = std::max({size, std::fabs(corner.x), std::fabs(corner.y)});
   if (!(size > 0) || !std::isfinite(size)) return;
   const float scale = std::ldexp(1.0f, std::clamp(-std::ilogb(size), -126, 127));
   for (Corner& corner : corners) {

@@ -13,6 +13,7 @@ namespace {
 
 constexpr float negligible_component = 0x1p-64f;
 constexpr float far_origin = 16;  // in scene sizes
+constexpr float farthest_move = 0x1p100f;
 constexpr float slab_room = 0x1p-20f;
 
 float largest(const vec3& v) { return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}); }
@@ -56,7 +57,7 @@ void TraceRay::approach(const vec3& box_min, const vec3& box_max) {
   if (reach <= far_origin * size) return;
   const float to_centre = (box_min[axis] * 0.5f + box_max[axis] * 0.5f) - origin[axis];
   const float t = to_centre * stretch * (1.0f - slab_room) - 2.0f * size;
-  if (!(t > 0)) return;
+  if (!(t > 0 && t < farthest_move)) return;
   for (int k = 0; k < 3; ++k) {
     const Unrounded way = exact_product(direction[k], t);
     const Unrounded sum = exact_sum(origin[k], way.value);

@@ -4,6 +4,7 @@
 
 const float NEGLIGIBLE_COMPONENT = 5.42101086242752217e-20;  // 2^-64, of a direction whose largest is in [1, 4)
 const float FAR_ORIGIN = 16.0;                               // in scene sizes
+const float FARTHEST_MOVE = 1.2676506002282294e30;           // 2^100: beyond it splitting overflows
 
 struct TraceRay {
   vec3 origin;
@@ -81,7 +82,7 @@ void approach_scene(Aabb box, inout TraceRay r) {
   if (!(largest(reach_of(r.origin, box)) > FAR_ORIGIN * size)) return;
   precise vec3 to_centre = (box.box_min * 0.5 + box.box_max * 0.5) - r.origin;
   precise float t = cyclic(to_centre, r.axis).z * r.shear.z * (1.0 - 9.5367431640625e-7) - 2.0 * size;
-  if (!(t > 0.0)) return;
+  if (!(t > 0.0 && t < FARTHEST_MOVE)) return;
   r.origin = vec3(along(r.origin.x, r.direction.x, t), along(r.origin.y, r.direction.y, t),
                   along(r.origin.z, r.direction.z, t));
   precise float t_min = max(r.t_min - t, 0.0);
