@@ -8,9 +8,10 @@
 // waits.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_shuffle : require
 #include "interface/hploc.h"
 #include "interface/ploc.h"
-#define PLOC_RUN 4
+#define PLOC_RUN 1
 #define PLOC_TILE_BOXES HPLOC_LIST
 #include "lib/ploc_round.glsl"
 #include "lib/ploc_search.glsl"
@@ -35,7 +36,10 @@ void load_tile(uint first, uint last, uint place_count) {
   [[dont_unroll]] for (uint i = lane(); i <= last - first; i += lanes()) {
     uint triangle = args.values.at[first + i];
     Aabb box = args.boxes.at[triangle];
-    clusters[i] = Node(box.box_min, triangle, box.box_max, 0u);
+    uint words[NODE_WORDS] = uint[NODE_WORDS](
+        floatBitsToUint(box.box_min.x), floatBitsToUint(box.box_min.y), floatBitsToUint(box.box_min.z), triangle,
+        floatBitsToUint(box.box_max.x), floatBitsToUint(box.box_max.y), floatBitsToUint(box.box_max.z), 0u);
+    [[unroll]] for (uint word = 0u; word < NODE_WORDS; ++word) cluster_words[i * NODE_WORDS + word] = words[word];
     names[i] = first + i;
     list[i] = i;
     levels[i] = level_before(first + i, place_count);
@@ -70,6 +74,7 @@ uint build_tile(uint first, uint last, uint place_count, Normalisation normalisa
     // Second children first: their sibling, if it lies in the tile, is the last open node.
     [[dont_unroll]] while (node.first != bottom && levels[node.first - first] < level_behind) {
       uint word = open_nodes[--count];
+      sync();
       Range sibling = Range(word >> HPLOC_ARRIVAL_SHIFT, node.first - 1u, word & (HPLOC_LIST - 1u));
       bool root = sibling.first == 0u && place + 1u == place_count;
       uint left = join_in_tile(first, sibling, node, root ? 1u : CLUSTER_LIMIT, normalisation);
@@ -85,10 +90,11 @@ uint build_tile(uint first, uint last, uint place_count, Normalisation normalisa
 
 // Leaves a node's clusters in memory; `base`: where they are in the list.
 void publish(Range node, uint base) {
-  [[dont_unroll]] for (uint i = lane(); i < node.clusters; i += lanes()) {
-    uint slot = list[base + i];
-    args.clusters.at[names[slot]] = clusters[slot];
-    args.cluster_names.at[node.first + i] = names[slot];
+  CoherentUintBuffer words = CoherentUintBuffer(args.clusters);
+  [[dont_unroll]] for (uint i = lane(); i < node.clusters * NODE_WORDS; i += lanes()) {
+    uint slot = list[base + i / NODE_WORDS], word = i % NODE_WORDS;
+    words.at[names[slot] * NODE_WORDS + word] = cluster_words[slot * NODE_WORDS + word];
+    if (word == 0u) args.cluster_names.at[node.first + i / NODE_WORDS] = names[slot];
   }
   memoryBarrierBuffer();
   sync();
@@ -116,10 +122,19 @@ void fetch(Range left, Range right) {
     uint place = i < left.clusters ? left.first + i : right.first + i - left.clusters;
     uint name = args.cluster_names.at[place];
     names[i] = name;
-    clusters[i] = args.clusters.at[name];
     list[i] = i;
   }
   sync();
+  CoherentUintBuffer words = CoherentUintBuffer(args.clusters);
+  [[dont_unroll]] for (uint i = lane(); i < (left.clusters + right.clusters) * NODE_WORDS; i += lanes())
+    cluster_words[i] = words.at[names[i / NODE_WORDS] * NODE_WORDS + i % NODE_WORDS];
+  sync();
+}
+
+void write_root() {
+  UintBuffer node_words = UintBuffer(args.nodes);
+  [[dont_unroll]] for (uint word = lane(); word < NODE_WORDS; word += lanes())
+    node_words.at[word] = cluster_words[list[0] * NODE_WORDS + word];
 }
 
 // Climbs from a published node as long as its sibling is there before it.
@@ -139,7 +154,7 @@ void climb(Range node, uint place_count, Normalisation normalisation) {
     node.clusters =
         merge_list(0u, node.clusters + far_clusters, root ? 1u : CLUSTER_LIMIT, normalisation);
     if (root) {
-      if (lane() == 0u) args.nodes.at[0] = clusters[list[0]];
+      write_root();
       return;
     }
     publish(node, 0u);
@@ -168,7 +183,7 @@ void main() {
   load_tile(first, last, state.active_count);
   uint count = build_tile(first, last, state.active_count, normalisation);
   if (first == 0u && count == 1u && last + 1u == state.active_count) {
-    if (lane() == 0u) args.nodes.at[0] = clusters[list[0]];
+    write_root();
     return;
   }
   [[dont_unroll]] for (uint i = 0u; i < count; ++i) {
