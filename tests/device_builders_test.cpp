@@ -17,9 +17,6 @@
 namespace coppice {
 namespace {
 
-// The device's own builder among those of the CPU.
-constexpr std::string_view DEVICE_BUILDER = "gpu-ploc";
-
 constexpr std::uint32_t TRIANGLE_COUNT = 5000;
 constexpr std::uint32_t RAY_COUNT = 20000;
 
@@ -47,7 +44,11 @@ Scene small_terrain() { return make_terrain(TRIANGLE_COUNT); }
 class DeviceTraceOf : public DeviceTest, public testing::WithParamInterface<std::string_view> {
  protected:
   static std::vector<Node> build(const std::vector<Triangle>& triangles) {
-    if (GetParam() == DEVICE_BUILDER) return build_on(test_device(), triangles, {}).nodes;
+    if (const NamedDeviceBuilder* named = find_device_builder(GetParam())) {
+      BuildOptions options;
+      options.builder = named->builder;
+      return build_on(test_device(), triangles, options).nodes;
+    }
     return find_cpu_builder(GetParam()).build(triangles, {}).nodes;
   }
 
@@ -69,7 +70,7 @@ class DeviceTraceOf : public DeviceTest, public testing::WithParamInterface<std:
     const TracedScene& scene = traced_scene(make);
     const Traced device = trace_on_device(build(scene.triangles), scene.triangles, scene.rays);
     EXPECT_EQ(device.error_word, 0u) << describe_error_word(device.error_word);
-    const bool splits = GetParam() != DEVICE_BUILDER && find_cpu_builder(GetParam()).splits_triangles;
+    const bool splits = !find_device_builder(GetParam()) && find_cpu_builder(GetParam()).splits_triangles;
     // A hit on the seam of two parts may be lost to rounding.
     const std::uint64_t most = splits ? scene.rays.size() / 10'000 : 0;
     EXPECT_LE(compare_hits(device.hits, scene.by_force).other_triangle, most);
@@ -92,7 +93,8 @@ TEST_P(DeviceTraceOfTree, ScatterAgreesWithBruteForce) { expect_hits_of_brute_fo
 TEST_P(DeviceTraceOfTree, TerrainAgreesWithBruteForce) { expect_hits_of_brute_force(small_terrain); }
 
 std::vector<std::string_view> tree_builders() {
-  std::vector<std::string_view> names = {DEVICE_BUILDER};
+  std::vector<std::string_view> names;
+  for (const NamedDeviceBuilder& named : device_builders()) names.push_back(named.name);
   for (const CpuBuilder& builder : cpu_builders()) {
     if (builder.name != "none") names.push_back(builder.name);
   }

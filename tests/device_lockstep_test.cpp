@@ -7,34 +7,15 @@
 #include "scene/hard_cases.h"
 #include "stages/lockstep_executor.h"
 #include "stages/stages.h"
-#include "support/test_device.h"
+#include "support/lockstep.h"
 
 namespace coppice {
 namespace {
 
 class Lockstep : public DeviceTest {};
 
-using Plant = std::function<void(std::vector<Step>&)>;
-
-std::optional<Difference> build_in_lockstep(std::span<const Triangle> triangles, const BuildOptions& options,
-                                            const Plant& plant = {}) {
-  Layout layout(test_device().properties().max_block_bytes);
-  const BuildPlan plan = plan_build(layout, static_cast<std::uint32_t>(triangles.size()), options);
-  LockstepExecutor executor(test_device(), layout);
-  executor.upload(plan.triangles, triangles);
-  const auto difference = executor.run([&](Chain& chain) {
-    append_build(chain, plan);
-    if (plant) plant(chain.steps());
-  });
-  EXPECT_EQ(executor.cpu().read(plan.state)[0].error_word, 0u);
-  return difference;
-}
-
 void expect_equal(std::span<const Triangle> triangles, const BuildOptions& options, const std::string& what) {
-  const auto difference = build_in_lockstep(triangles, options);
-  EXPECT_FALSE(difference) << what << ": stage " << difference->stage << ", " << difference->slot << "["
-                           << difference->index << "]\ncpu " << difference->cpu << "\ngpu "
-                           << difference->gpu;
+  expect_build_in_lockstep(triangles, options, what);
 }
 
 TEST_F(Lockstep, SizesUpTo300) {
@@ -92,12 +73,6 @@ TEST_P(LockstepHardCases, SameBits) {
   const HardCase* const hard_case = find_hard_case(GetParam());
   const std::uint32_t count = std::min(hard_case->default_triangle_count, 20000u);
   expect_equal(scene_arrays(hard_case->make(count, 1)).triangles, {}, std::string(GetParam()));
-}
-
-std::vector<std::string_view> hard_case_names() {
-  std::vector<std::string_view> names;
-  for (const HardCase& hard_case : hard_cases()) names.push_back(hard_case.name);
-  return names;
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, LockstepHardCases, testing::ValuesIn(hard_case_names()),
@@ -160,6 +135,7 @@ struct Fault {
   const char* stage;
   const char* slot;
   StageDeclaration declaration;
+  DeviceBuilder builder = DeviceBuilder::ploc;
 };
 
 void wrong_shift(const void* args) {
@@ -205,13 +181,18 @@ std::vector<Fault> faults() {
       {"ploc_finish", "nodes",
        faulty<&stages::ploc_finish,
               [](const void* args) { ++args_of<PlocFinishArgs>(args).nodes[0].height; }>()},
+      {"hploc_build", "arrivals",
+       faulty<&stages::hploc_build, [](const void* args) { ++args_of<HplocBuildArgs>(args).arrivals[7]; }>(),
+       DeviceBuilder::hploc},
   };
 }
 
 TEST_F(Lockstep, NamesAPlantedFaultByStageAndSlot) {
   const std::vector<Triangle> triangles = random_triangles(3000, 1);
   for (const Fault& fault : faults()) {
-    const auto difference = build_in_lockstep(triangles, {}, [&](std::vector<Step>& steps) {
+    BuildOptions options;
+    options.builder = fault.builder;
+    const auto difference = build_in_lockstep(triangles, options, [&](std::vector<Step>& steps) {
       for (Step& step : steps) {
         if (step.stage && std::string_view(step.stage->name) == fault.stage) step.stage = &fault.declaration;
       }

@@ -11,6 +11,7 @@ BuildOptions CheckedDevice::build_options(const Options& options, std::uint32_t 
   build.radius = options.radius;
   build.morton_bits = morton_bits;
   build.lookback = lookback;
+  if (const NamedDeviceBuilder* named = find_device_builder(options.builder)) build.builder = named->builder;
   return build;
 }
 

@@ -29,8 +29,9 @@ int run_build(const Options& options) {
   BuildReport report = report_for(options, scene, arrays.triangles);
   int status = 0;
   Bvh bvh;
-  report = options.builder == "gpu-ploc" ? build_on_device(options, arrays, report, status)
-                                         : measure_cpu_build(arrays.triangles, report, options.runs, bvh);
+  report = find_device_builder(options.builder)
+               ? build_on_device(options, arrays, report, status)
+               : measure_cpu_build(arrays.triangles, report, options.runs, bvh);
   if (talks(options)) print_build(report);
   write_json(options.json, to_json(report));
   return status;

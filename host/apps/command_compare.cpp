@@ -5,6 +5,7 @@
 #include "apps/comparison.h"
 #include "apps/progress.h"
 #include "builders/registry.h"
+#include "pipeline/build.h"
 #include "scene/input_error.h"
 #include "scene/scene_source.h"
 
@@ -19,7 +20,7 @@ const std::vector<std::string> default_scenes = {"terrain:500", "scatter:100000"
 std::vector<std::string> all_builders() {
   std::vector<std::string> names;
   for (const CpuBuilder& builder : cpu_builders()) names.emplace_back(builder.name);
-  names.emplace_back("gpu-ploc");
+  for (const NamedDeviceBuilder& named : device_builders()) names.emplace_back(named.name);
   return names;
 }
 

@@ -78,7 +78,7 @@ int run_render(const Options& options) {
 
   std::optional<CheckedDevice> device;
   const auto device_start = Clock::now();
-  if (options.tracer == "gpu" || options.builder == "gpu-ploc") device.emplace(open_device(options));
+  if (options.tracer == "gpu" || find_device_builder(options.builder)) device.emplace(open_device(options));
   const double device_ms = device ? ms_since(device_start) : 0;
   const RenderReport report = options.tracer == "gpu"
                                   ? render_on_device(*device, scene, options)

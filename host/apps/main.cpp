@@ -14,6 +14,7 @@
 #include "apps/options.h"
 #include "builders/registry.h"
 #include "interface/ploc.h"
+#include "pipeline/build.h"
 #include "scene/write_png.h"
 
 namespace {
@@ -65,17 +66,22 @@ void add_scene(CLI::App& command, Options& options) {
   command.add_option("SCENE", options.scene, "an .obj file or a built-in scene")->capture_default_str();
 }
 
-std::vector<std::string> builder_names() {
+std::vector<std::string> device_builder_names() {
   std::vector<std::string> builders;
-  for (const coppice::CpuBuilder& builder : coppice::cpu_builders()) builders.emplace_back(builder.name);
-  builders.emplace_back("gpu-ploc");
+  for (const coppice::NamedDeviceBuilder& named : coppice::device_builders())
+    builders.emplace_back(named.name);
   return builders;
 }
 
-void add_builder(CLI::App& command, Options& options) {
-  command.add_option("--builder", options.builder)
-      ->check(CLI::IsMember(builder_names()))
-      ->capture_default_str();
+std::vector<std::string> builder_names() {
+  std::vector<std::string> builders;
+  for (const coppice::CpuBuilder& builder : coppice::cpu_builders()) builders.emplace_back(builder.name);
+  for (std::string& name : device_builder_names()) builders.push_back(std::move(name));
+  return builders;
+}
+
+void add_builder(CLI::App& command, Options& options, const std::vector<std::string>& names) {
+  command.add_option("--builder", options.builder)->check(CLI::IsMember(names))->capture_default_str();
 }
 
 void add_leaf_size(CLI::App& command, Options& options) {
@@ -192,7 +198,8 @@ int run(int argc, char** argv) {
         ->check(CLI::Range(1u, 10000u))
         ->capture_default_str();
   for (CLI::App* const command : {render, build, compare}) add_leaf_size(*command, options);
-  for (CLI::App* const command : {render, build}) add_builder(*command, options);
+  for (CLI::App* const command : {render, build}) add_builder(*command, options, builder_names());
+  add_builder(*lockstep, options, device_builder_names());
   for (CLI::App* const command : {render, build, lockstep}) {
     add_scene(*command, options);
     add_ploc(*command, options);

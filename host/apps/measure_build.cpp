@@ -36,7 +36,8 @@ BuildReport report_for(const Options& options, const Scene& scene, std::span<con
   report.radius = options.radius;
   report.leaf_size = options.leaf_size;
   report.morton_bits = morton_bits_for(options, triangles);
-  const bool sorts = options.builder == "gpu-ploc" || find_cpu_builder(options.builder).uses_morton_codes;
+  const bool sorts =
+      find_device_builder(options.builder) || find_cpu_builder(options.builder).uses_morton_codes;
   if (sorts && options.morton_bits == "auto" && report.morton_bits == 60) {
     std::fprintf(stderr, "note: Morton codes of 60 bits, as cells of 30 are crowded (--morton-bits)\n");
   }

@@ -17,7 +17,7 @@ struct RenderReport {
 // before.
 RenderReport render_on_device(CheckedDevice& device, const Scene& scene, const Options& options);
 
-// Traces by the independent CPU tracer; shades by the twins. With builder gpu-ploc `device` builds the tree.
+// Traces by the independent CPU tracer; shades by the twins. With a builder on the device `device` builds the tree.
 RenderReport render_on_host(CheckedDevice* device, const Scene& scene, const Options& options);
 
 }  // namespace coppice

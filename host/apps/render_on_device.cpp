@@ -94,7 +94,7 @@ void describe_build(const CheckedDevice& device, const GpuExecutor& executor, co
 RenderReport render_on_device(CheckedDevice& device, const Scene& scene, const Options& options) {
   const SceneArrays arrays = scene_arrays(scene);
   const auto triangle_count = static_cast<std::uint32_t>(arrays.triangles.size());
-  const bool builds = options.builder == "gpu-ploc";
+  const bool builds = find_device_builder(options.builder);
   RenderReport report;
   report.trace_device = device.device.properties().name + ", " + device.device.properties().driver;
   report.build = report_for(options, scene, arrays.triangles);

@@ -32,7 +32,7 @@ RenderReport render_on_host(CheckedDevice* device, const Scene& scene, const Opt
   report.trace_device = "host CPU";
   report.build = report_for(options, scene, arrays.triangles);
   Bvh bvh;
-  if (options.builder == "gpu-ploc") {
+  if (find_device_builder(options.builder)) {
     bvh = build_on_device(*device, arrays, report.build, once);
   } else {
     report.build = measure_cpu_build(arrays.triangles, report.build, options.frames, bvh);

@@ -5,6 +5,7 @@
 
 #include "builders/bottom_up.h"
 #include "builders/gd16.h"
+#include "builders/hploc.h"
 #include "builders/lbvh.h"
 #include "builders/ploc.h"
 #include "builders/ploc_parallel.h"
@@ -41,6 +42,11 @@ std::span<const CpuBuilder> cpu_builders() {
       {"ploc", "Meister and Bittner 2018, sequential",
        [](Triangles t, Config c) {
          return build_ploc(t, {c.radius, c.morton_bits});
+       },
+       false, true},
+      {"hploc", "Benthin et al. 2024, sequential",
+       [](Triangles t, Config c) {
+         return build_hploc(t, {c.radius, c.morton_bits});
        },
        false, true},
       {"ploc-parallel", "Meister and Bittner 2018, all threads",

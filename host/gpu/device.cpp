@@ -82,8 +82,9 @@ std::string why_unsuitable(const vk::raii::PhysicalDevice& physical) {
   if (core.apiVersion < VK_API_VERSION_1_3) return "no Vulkan 1.3";
   const auto& subgroups = properties.get<vk::PhysicalDeviceVulkan11Properties>();
   const auto needed = vk::SubgroupFeatureFlagBits::eBasic | vk::SubgroupFeatureFlagBits::eVote |
-                      vk::SubgroupFeatureFlagBits::eArithmetic | vk::SubgroupFeatureFlagBits::eBallot;
-  if ((subgroups.subgroupSupportedOperations & needed) != needed) return "no subgroup arithmetic";
+                      vk::SubgroupFeatureFlagBits::eArithmetic | vk::SubgroupFeatureFlagBits::eBallot |
+                      vk::SubgroupFeatureFlagBits::eShuffle;
+  if ((subgroups.subgroupSupportedOperations & needed) != needed) return "no subgroup arithmetic or shuffle";
   if (subgroups.subgroupSize < 4) return "subgroups of fewer than 4 invocations";
   if (subgroups.subgroupSize > 64) return "subgroups of more than 64 invocations";
   const auto& floats = properties.get<vk::PhysicalDeviceVulkan12Properties>();

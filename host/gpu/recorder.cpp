@@ -4,15 +4,17 @@
 #include <stdexcept>
 
 #include "gpu/arena_blocks.h"
+#include "interface/types.h"
 
 namespace coppice {
 
 namespace {
 
 // Local size in x, from the kernel's execution mode: literal, or the id of a constant (LocalSizeId,
-// SPIR-V 1.6).
+// SPIR-V 1.6). 0 for a kernel whose workgroup is one subgroup: then it is a specialization constant.
 std::uint32_t local_size_x(std::span<const std::uint32_t> spirv) {
-  constexpr std::uint32_t op_execution_mode = 16, op_execution_mode_id = 331, op_constant = 43;
+  constexpr std::uint32_t op_execution_mode = 16, op_execution_mode_id = 331, op_constant = 43,
+                          op_spec_constant = 50;
   constexpr std::uint32_t mode_local_size = 17, mode_local_size_id = 38;
   std::uint32_t constant_id = 0;
   for (std::size_t i = 5; i < spirv.size(); i += spirv[i] >> 16) {
@@ -20,6 +22,7 @@ std::uint32_t local_size_x(std::span<const std::uint32_t> spirv) {
     if (op == op_execution_mode && spirv[i + 2] == mode_local_size) return spirv[i + 3];
     if (op == op_execution_mode_id && spirv[i + 2] == mode_local_size_id) constant_id = spirv[i + 3];
     if (op == op_constant && constant_id != 0 && spirv[i + 2] == constant_id) return spirv[i + 3];
+    if (op == op_spec_constant && constant_id != 0 && spirv[i + 2] == constant_id) return 0;
   }
   throw std::logic_error("kernel without a local size");
 }
@@ -27,11 +30,17 @@ std::uint32_t local_size_x(std::span<const std::uint32_t> spirv) {
 vk::raii::Pipeline make_pipeline(const VulkanContext& context, const Kernel& kernel) {
   const vk::raii::ShaderModule module(
       context.device, vk::ShaderModuleCreateInfo({}, kernel.spirv.size_bytes(), kernel.spirv.data()));
+  std::vector<std::uint32_t> constants(kernel.specialization.begin(), kernel.specialization.end());
   std::vector<vk::SpecializationMapEntry> entries;
-  for (std::uint32_t id = 0; id < kernel.specialization.size(); ++id) entries.emplace_back(id, id * 4, 4);
+  for (std::uint32_t id = 0; id < constants.size(); ++id) entries.emplace_back(id, id * 4, 4);
+  const auto add = [&](std::uint32_t id, std::uint32_t value) {
+    entries.emplace_back(id, static_cast<std::uint32_t>(constants.size() * 4), 4);
+    constants.push_back(value);
+  };
+  add(DEVICE_SUBGROUP_SIZE_ID, context.properties.subgroup_size);
+  add(DEVICE_LANES_IN_STEP_ID, context.properties.type == DeviceType::cpu);
   const vk::SpecializationInfo specialization(static_cast<std::uint32_t>(entries.size()), entries.data(),
-                                              kernel.specialization.size_bytes(),
-                                              kernel.specialization.data());
+                                              constants.size() * 4, constants.data());
   // Kernels that rank by subgroup need whole ones; the others have no size that subgroups must divide.
   const bool whole = local_size_x(kernel.spirv) % context.properties.subgroup_size == 0;
   const auto flags = whole ? vk::PipelineShaderStageCreateFlagBits::eRequireFullSubgroups

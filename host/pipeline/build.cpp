@@ -102,7 +102,33 @@ void append_ploc(Chain& chain, const BuildPlan& plan) {
             {1, 1, 1});
 }
 
+// One dispatch builds the whole tree.
+void append_hploc(Chain& chain, const BuildPlan& plan) {
+  const std::uint32_t tile_count = tiles(plan.triangle_count, HPLOC_TILE).x;
+  const std::uint32_t rows = tiles(tile_count, 65535).x;
+  const std::uint32_t cluster_limit = plan.options.builder == DeviceBuilder::lbvh ? 1 : HPLOC_CLUSTERS;
+  chain.run(stages::hploc_build,
+            {chain.at(plan.boxes), chain.at(plan.keys[0]), chain.at(plan.values[0]), chain.at(plan.nodes),
+             chain.at(plan.clusters[0]), chain.at(plan.cluster_names), chain.at(plan.arrivals),
+             chain.at(plan.state), plan.options.morton_bits / 30, plan.options.radius, cluster_limit, 0},
+            rows == 0 ? uvec3(0) : tiles(tile_count, rows, rows), {cluster_limit});
+}
+
 }  // namespace
+
+std::span<const NamedDeviceBuilder> device_builders() {
+  static constexpr NamedDeviceBuilder builders[] = {{"gpu-ploc", DeviceBuilder::ploc},
+                                                    {"gpu-hploc", DeviceBuilder::hploc},
+                                                    {"gpu-lbvh", DeviceBuilder::lbvh}};
+  return builders;
+}
+
+const NamedDeviceBuilder* find_device_builder(std::string_view name) {
+  for (const NamedDeviceBuilder& named : device_builders()) {
+    if (named.name == name) return &named;
+  }
+  return nullptr;
+}
 
 void append_build(Chain& chain, const BuildPlan& plan) {
   chain.clear(plan.state);
@@ -110,9 +136,13 @@ void append_build(Chain& chain, const BuildPlan& plan) {
   chain.clear(plan.histogram);
   chain.clear(plan.sort_status);
   chain.clear(plan.sort_tickets);
+  chain.clear(plan.arrivals);
   append_bounds(chain, plan);
   append_sort(chain, plan);
-  append_ploc(chain, plan);
+  if (plan.options.builder == DeviceBuilder::ploc)
+    append_ploc(chain, plan);
+  else
+    append_hploc(chain, plan);
 }
 
 }  // namespace coppice

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <string_view>
 
 #include "interface/ploc.h"
 #include "interface/types.h"
@@ -9,14 +11,30 @@
 
 namespace coppice {
 
+// What builds the tree over the sorted codes.
+enum class DeviceBuilder { ploc, hploc, lbvh };
+
+// A builder on the device as the commands know it.
+struct NamedDeviceBuilder {
+  std::string_view name;
+  DeviceBuilder builder;
+};
+
+// All of them, the default one first.
+std::span<const NamedDeviceBuilder> device_builders();
+
+// None where the name is not that of a builder on the device.
+const NamedDeviceBuilder* find_device_builder(std::string_view name);
+
 struct BuildOptions {
-  std::uint32_t radius = 16;       // search radius of PLOC, 1 to PLOC_MAX_RADIUS
+  std::uint32_t radius = 16;       // search radius of PLOC and H-PLOC, 1 to PLOC_MAX_RADIUS
   std::uint32_t morton_bits = 30;  // 30 or 60
   bool lookback = true;  // false: sort and compaction by reduce, then scan: no workgroup waits for another
   // How long a tile polls its predecessor before it sums it up itself, in turns of LOOKBACK_POLLS.
   std::uint32_t lookback_turns = 16;
   std::uint32_t lookback_max_fallbacks = 64;  // a tile that would have to sum up more of them gives up
   std::uint32_t lookback_stress = 0;          // bits of interface/lookback.h, for tests
+  DeviceBuilder builder = DeviceBuilder::ploc;
 };
 
 // A scene's triangles and the tree over them, whoever builds it.
@@ -30,15 +48,21 @@ struct TreeSlots {
 // Where a build keeps what. A pure function of the number of triangles and the options.
 struct BuildPlan : TreeSlots {
   BuildOptions options;
-  std::uint32_t rounds_bound = 0;     // rounds that are enough for any scene of this size
+  std::uint32_t rounds_bound = 0;     // rounds of PLOC that are enough for any scene of this size
   std::uint32_t recorded_rounds = 0;  // of them, those that may come before the finish
 
-  Slot<PlocRound> rounds;  // out: one an entered round, the last with one cluster
   Slot<Aabb> boxes;
   Slot<uint> keys[2], values[2];
   Slot<uint> histogram, sort_status, sort_tickets;
-  Slot<Node> clusters[2];
+
+  Slot<Node> clusters[2];  // of PLOC of even and odd rounds; H-PLOC and LBVH have one list
+
+  // Of PLOC only.
+  Slot<PlocRound> rounds;  // out: one an entered round, the last with one cluster
   Slot<uint> nearest, round_status;
+
+  // Of H-PLOC and LBVH only.
+  Slot<uint> cluster_names, arrivals;
 };
 
 // The most triangles of a build: Vulkan promises 65,535 workgroups a dispatch.
@@ -54,7 +78,7 @@ TreeSlots plan_tree(Layout& layout, std::uint32_t triangle_count, std::uint64_t 
 // more than max_triangles.
 BuildPlan plan_build(Layout& layout, std::uint32_t triangle_count, const BuildOptions& options);
 
-// Triangles to tree: bounds, Morton codes, sort, PLOC.
+// Triangles to tree: bounds, Morton codes, sort, and the builder of the options.
 void append_build(Chain& chain, const BuildPlan& plan);
 
 }  // namespace coppice

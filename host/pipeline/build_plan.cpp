@@ -11,6 +11,24 @@ namespace {
 
 std::uint32_t divide_up(std::uint32_t a, std::uint32_t b) { return a / b + (a % b != 0); }
 
+void add_ploc_slots(Layout& layout, BuildPlan& plan) {
+  const std::uint32_t n = plan.triangle_count;
+  plan.rounds_bound = ploc_rounds_bound(n, 1);
+  plan.recorded_rounds = ploc_rounds_bound(n, PLOC_FINISH_CLUSTERS);
+  plan.rounds = layout.add<PlocRound>("rounds", plan.rounds_bound + 1);
+  plan.clusters[0] = layout.add<Node>("clusters_even", n);
+  plan.clusters[1] = layout.add<Node>("clusters_odd", n);
+  plan.nearest = layout.add<uint>("nearest", n);
+  plan.round_status =
+      layout.add<uint>("round_status", std::uint64_t{divide_up(n, PLOC_MERGE_TILE)} * PLOC_MERGE_SUMS);
+}
+
+void add_hploc_slots(Layout& layout, BuildPlan& plan) {
+  plan.clusters[0] = layout.add<Node>("clusters", plan.triangle_count);
+  plan.cluster_names = layout.add<uint>("cluster_names", plan.triangle_count);
+  plan.arrivals = layout.add<uint>("arrivals", plan.triangle_count);
+}
+
 }  // namespace
 
 std::uint32_t ploc_rounds_bound(std::uint32_t clusters, std::uint32_t target) {
@@ -43,24 +61,21 @@ BuildPlan plan_build(Layout& layout, std::uint32_t triangle_count, const BuildOp
   const std::uint32_t key_words = options.morton_bits / 30;
   const std::uint32_t passes = key_words * SORT_PASSES_PER_WORD;
   plan.options = options;
-  plan.rounds_bound = ploc_rounds_bound(n, 1);
-  plan.recorded_rounds = ploc_rounds_bound(n, PLOC_FINISH_CLUSTERS);
 
   static_cast<TreeSlots&>(plan) = plan_tree(layout, n, n == 0 ? 0 : 2 * std::uint64_t{n} - 1);
-  plan.rounds = layout.add<PlocRound>("rounds", plan.rounds_bound + 1);
   plan.boxes = layout.add<Aabb>("boxes", n);
   for (int i = 0; i < 2; ++i) {
     plan.keys[i] = layout.add<uint>(i ? "keys_b" : "keys_a", std::uint64_t{n} * key_words);
     plan.values[i] = layout.add<uint>(i ? "values_b" : "values_a", n);
-    plan.clusters[i] = layout.add<Node>(i ? "clusters_odd" : "clusters_even", n);
   }
   plan.histogram = layout.add<uint>("histogram", passes * SORT_DIGITS);
   plan.sort_status =
       layout.add<uint>("sort_status", std::uint64_t{passes} * divide_up(n, SORT_TILE) * SORT_DIGITS);
   plan.sort_tickets = layout.add<uint>("sort_tickets", passes);
-  plan.nearest = layout.add<uint>("nearest", n);
-  plan.round_status =
-      layout.add<uint>("round_status", std::uint64_t{divide_up(n, PLOC_MERGE_TILE)} * PLOC_MERGE_SUMS);
+  if (options.builder == DeviceBuilder::ploc)
+    add_ploc_slots(layout, plan);
+  else
+    add_hploc_slots(layout, plan);
   return plan;
 }
 

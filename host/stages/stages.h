@@ -1,6 +1,7 @@
 #pragma once
 
 #include "interface/bounds.h"
+#include "interface/hploc.h"
 #include "interface/morton.h"
 #include "interface/ploc.h"
 #include "interface/sort.h"
@@ -22,6 +23,7 @@
   STAGE(ploc_tile_scan, PlocTileScanArgs)       \
   STAGE(ploc_merge, PlocMergeArgs)              \
   STAGE(ploc_finish, PlocFinishArgs)            \
+  STAGE(hploc_build, HplocBuildArgs)            \
   STAGE(camera_rays, CameraRaysArgs)            \
   STAGE(trace_closest, TraceClosestArgs)        \
   STAGE(trace_brute_force, TraceBruteForceArgs) \

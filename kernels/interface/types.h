@@ -81,6 +81,12 @@ struct Node {
   uint height;  // 0 for a leaf, else 1 + the larger height of the children
 };
 
+// Specialization constants that every kernel may declare: what the device is. No result depends on them.
+const uint DEVICE_SUBGROUP_SIZE_ID = 30;
+// 1 where the invocations of a subgroup are the lanes of one vector (CPU devices): what one has written to
+// shared memory the next instruction of all of them reads.
+const uint DEVICE_LANES_IN_STEP_ID = 31;
+
 INTERFACE_BUFFER(UintBuffer, uint, 4)
 INTERFACE_COHERENT_BUFFER(CoherentUintBuffer, uint, 4)
 INTERFACE_BUFFER(TriangleBuffer, Triangle, 4)
