@@ -144,12 +144,14 @@ int run(int argc, char** argv) {
   CLI::App* const render = app.add_subcommand("render", "build, trace, write the picture");
   render->add_option("-o,--output", options.output)->capture_default_str();
   render->add_option("--tracer", options.tracer)->check(CLI::IsMember({"gpu", "cpu"}))->capture_default_str();
+  render->add_flag("--kernels", options.kernels, "print the time of every kernel; takes the frame once more");
   add_picture(*render, options);
   CLI::App* const build =
       app.add_subcommand("build", "build only: time of every kernel, quality of the tree");
   build->add_option("--runs", options.runs, "after a warm-up")
       ->check(CLI::Range(1u, 10000u))
       ->capture_default_str();
+  build->add_flag("--rounds", options.rounds, "a table of the rounds of PLOC on the device");
   CLI::App* const lockstep =
       app.add_subcommand("lockstep", "every stage on device and CPU; the first difference, or none");
   add_picture(*lockstep, options);

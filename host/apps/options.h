@@ -18,7 +18,9 @@ struct Options {
   std::uint32_t radius = 16;
   std::string morton_bits = "auto";  // auto, 30, 60
   std::uint32_t runs = 5;            // of `build`
+  bool rounds = false;               // of `build`: a table of the rounds of PLOC
   std::uint32_t frames = 1;          // of `render`: the whole frame so many times
+  bool kernels = false;              // of `render`: once more, to print the time of every kernel
   std::string lookback = "auto";     // auto, on, off
 
   std::vector<std::string> scenes, builders;  // of `compare`; empty: the default ones, all

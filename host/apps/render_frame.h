@@ -8,9 +8,9 @@ struct RenderReport {
   BuildReport build;
   double trace_ms = 0;
   std::uint64_t rays = 0, hits = 0, steps = 0;
-  std::string trace_device;         // name and driver
-  std::vector<KernelTime> kernels;  // of the trace, on a device
-  std::vector<uint> image;          // RGBA8
+  std::string trace_device;  // name and driver
+  KernelTable kernels;       // of the trace, on a device
+  std::vector<uint> image;   // RGBA8
 };
 
 // Builds and traces in one submit, nothing read back in between; with a CPU builder its tree is uploaded
