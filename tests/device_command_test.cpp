@@ -127,6 +127,36 @@ TEST_F(Command, RenderSplitsItsTimeOnlyWhenAsked) {
     EXPECT_NE(asked.out.find(part), std::string::npos) << part;
 }
 
+TEST_F(Command, BenchChecksAndTimes) {
+  const struct {
+    const char *arguments, *last_name;
+    std::size_t rows;
+    int last_size;
+  } cases[] = {{"sort --most 5000", "sort_pairs_64", 2 * 4 * 3, 5000},
+               {"build --most 12000", "gpu-ploc", 2, 12000},
+               {"trace terrain:500 --size 32x24", "trace_diffuse", 2, 0}};
+  for (const auto& c : cases) {
+    const Outcome outcome =
+        run(std::string("bench ") + c.arguments + " --runs 2 --validate --csv rows.csv --json -");
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const auto rows = nlohmann::json::parse(outcome.out)["rows"];
+    ASSERT_EQ(rows.size(), c.rows) << c.arguments;
+    EXPECT_EQ(rows.back()["name"], c.last_name);
+    if (c.last_size) {
+      EXPECT_EQ(rows.back()["size"], c.last_size);
+    }
+    for (const auto& row : rows) {
+      EXPECT_EQ(row["runs"], 2);
+      EXPECT_GE(row["warm_up_runs"], 10);
+      EXPECT_LE(row["ms_min"], row["ms"]);
+      EXPECT_LE(row["ms"], row["ms_max"]);
+    }
+    EXPECT_EQ(std::ranges::count(read("rows.csv"), '\n'), static_cast<int>(c.rows) + 1);
+  }
+  expect_refused("bench nonsense", 2, "nonsense");
+  expect_refused("bench sort --csv nowhere/rows.csv", 1, "nowhere/rows.csv");
+}
+
 TEST_F(Command, ChoosesTheMortonBitsThatTheSceneCallsFor) {
   std::string crowded;
   for (std::uint64_t i = 0; i < 3000; ++i) {

@@ -23,6 +23,10 @@ struct Options {
   bool kernels = false;              // of `render`: once more, to print the time of every kernel
   std::string lookback = "auto";     // auto, on, off
 
+  std::string bench;              // sort, build, trace
+  std::uint32_t most = 1u << 20;  // of `bench`: keys or triangles of the largest size
+  std::string csv;                // file; empty: none
+
   std::vector<std::string> scenes, builders;  // of `compare`; empty: the default ones, all
   double timeout_seconds = 60;
   std::string markdown, plot;  // files; empty: none
@@ -50,6 +54,7 @@ int run_build(const Options& options);
 int run_lockstep(const Options& options);
 int run_compare(const Options& options);
 int run_stability(const Options& options);
+int run_bench(const Options& options);
 int run_scenes(const Options& options);
 int run_devices(const Options& options);
 

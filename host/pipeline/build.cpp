@@ -28,13 +28,23 @@ void append_bounds(Chain& chain, const BuildPlan& plan) {
             tiles(plan.triangle_count, PRIMITIVE_BOUNDS_TILE));
 }
 
-void append_sort(Chain& chain, const BuildPlan& plan) {
-  const std::uint32_t n = plan.triangle_count, key_words = plan.options.morton_bits / 30;
-  const std::uint32_t passes = key_words * SORT_PASSES_PER_WORD;
+void append_morton_codes(Chain& chain, const BuildPlan& plan) {
+  const std::uint32_t n = plan.triangle_count;
   chain.run(stages::morton_codes,
             {chain.at(plan.boxes), chain.at(plan.state), chain.at(plan.keys[0]), chain.at(plan.values[0]), n,
-             key_words},
+             plan.options.morton_bits / 30},
             tiles(n, MORTON_TILE));
+}
+
+void clear_sort(Chain& chain, const BuildPlan& plan) {
+  chain.clear(plan.histogram);
+  chain.clear(plan.sort_status);
+  chain.clear(plan.sort_tickets);
+}
+
+void append_sort_passes(Chain& chain, const BuildPlan& plan) {
+  const std::uint32_t n = plan.triangle_count, key_words = plan.options.morton_bits / 30;
+  const std::uint32_t passes = key_words * SORT_PASSES_PER_WORD;
   chain.run(stages::sort_histogram, {chain.at(plan.keys[0]), chain.at(plan.histogram), n, key_words},
             tiles(n, SORT_HISTOGRAM_TILE, key_words));
   chain.run(stages::sort_digit_scan, {chain.at(plan.histogram), passes, 0}, {passes, 1, 1});
@@ -104,14 +114,18 @@ void append_ploc(Chain& chain, const BuildPlan& plan) {
 
 }  // namespace
 
+void append_sort(Chain& chain, const BuildPlan& plan) {
+  clear_sort(chain, plan);
+  append_sort_passes(chain, plan);
+}
+
 void append_build(Chain& chain, const BuildPlan& plan) {
   chain.clear(plan.state);
   chain.clear(plan.rounds);
-  chain.clear(plan.histogram);
-  chain.clear(plan.sort_status);
-  chain.clear(plan.sort_tickets);
+  clear_sort(chain, plan);
   append_bounds(chain, plan);
-  append_sort(chain, plan);
+  append_morton_codes(chain, plan);
+  append_sort_passes(chain, plan);
   append_ploc(chain, plan);
 }
 
