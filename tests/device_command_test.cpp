@@ -77,6 +77,86 @@ TEST_F(Command, BuildersReportTheSameTree) {
   EXPECT_EQ(reports[0]["tree_hash"].get<std::string>().size(), 16u);
 }
 
+TEST_F(Command, BuildSaysWhatEveryKernelMoves) {
+  const Outcome outcome = run("build scatter:20000 --runs 1 --rounds --validate --json report.json");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto report = nlohmann::json::parse(read("report.json"));
+  double sum = 0;
+  for (const auto& kernel : report["kernels"]) {
+    sum += kernel["ms"].get<double>();
+    EXPECT_NEAR(kernel["gb_per_s"], kernel["bytes"].get<double>() / (kernel["ms"].get<double>() * 1e6), 1e-9)
+        << kernel["name"];
+    EXPECT_GT(kernel["percent_of_copy"], 0) << kernel["name"];
+    EXPECT_NE(outcome.out.find(kernel["name"].get<std::string>() + " "), std::string::npos);
+  }
+  EXPECT_NEAR(report["timed_ms"], sum, 1e-9);
+  EXPECT_GT(report["copy_gb_per_s"], 0);
+  EXPECT_EQ(report["kernels"][1]["name"], "primitive_bounds");
+  EXPECT_EQ(report["kernels"][1]["bytes"], 20000 * 60);
+  for (const char* part : {"GB/s", "of copy", "with a timestamp after each dispatch", "ploc_finish, all"})
+    EXPECT_NE(outcome.out.find(part), std::string::npos) << part;
+}
+
+TEST_F(Command, RoundsEndWithOneCluster) {
+  for (const char* lookback : {"on", "off"}) {
+    const Outcome outcome =
+        run(std::string("build scatter:20000 --runs 1 --rounds --json - --lookback ") + lookback);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const auto report = nlohmann::json::parse(outcome.out);
+    const auto& rounds = report["ploc_rounds"];
+    ASSERT_GT(rounds.size(), 2u);
+    EXPECT_EQ(rounds[0]["clusters"], 20000);
+    for (std::size_t i = 0; i + 1 < rounds.size(); ++i) {
+      EXPECT_EQ(rounds[i]["round"], i);
+      EXPECT_EQ(rounds[i]["clusters"].get<int>() - rounds[i]["merged"].get<int>(), rounds[i + 1]["clusters"]);
+      EXPECT_GT(rounds[i]["nearest_ms"], 0);
+      EXPECT_GT(rounds[i]["merge_ms"], 0);
+    }
+    EXPECT_TRUE(rounds.back()["nearest_ms"].is_null());
+    EXPECT_LE(rounds.back()["clusters"], 512);
+    EXPECT_EQ(rounds.back()["clusters"].get<int>() - rounds.back()["merged"].get<int>(), 1);
+  }
+}
+
+TEST_F(Command, RenderSplitsItsTimeOnlyWhenAsked) {
+  const Outcome plain = run("render terrain:500 --size 64x48 -o out.png");
+  EXPECT_EQ(plain.out.find("trace_closest"), std::string::npos) << plain.out;
+  const Outcome asked = run("render terrain:500 --size 64x48 -o out.png --kernels");
+  ASSERT_EQ(asked.status, 0) << asked.err;
+  for (const char* part : {"primitive_bounds", "trace_closest", "of copy"})
+    EXPECT_NE(asked.out.find(part), std::string::npos) << part;
+}
+
+TEST_F(Command, BenchChecksAndTimes) {
+  const struct {
+    const char *arguments, *last_name;
+    std::size_t rows;
+    int last_size;
+  } cases[] = {{"sort --most 5000", "sort_pairs_64", 2 * 4 * 3, 5000},
+               {"build --most 12000", "gpu-ploc", 2, 12000},
+               {"trace terrain:500 --size 32x24", "trace_diffuse", 2, 0}};
+  for (const auto& c : cases) {
+    const Outcome outcome =
+        run(std::string("bench ") + c.arguments + " --runs 2 --validate --csv rows.csv --json -");
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const auto rows = nlohmann::json::parse(outcome.out)["rows"];
+    ASSERT_EQ(rows.size(), c.rows) << c.arguments;
+    EXPECT_EQ(rows.back()["name"], c.last_name);
+    if (c.last_size) {
+      EXPECT_EQ(rows.back()["size"], c.last_size);
+    }
+    for (const auto& row : rows) {
+      EXPECT_EQ(row["runs"], 2);
+      EXPECT_GE(row["warm_up_runs"], 10);
+      EXPECT_LE(row["ms_min"], row["ms"]);
+      EXPECT_LE(row["ms"], row["ms_max"]);
+    }
+    EXPECT_EQ(std::ranges::count(read("rows.csv"), '\n'), static_cast<int>(c.rows) + 1);
+  }
+  expect_refused("bench nonsense", 2, "nonsense");
+  expect_refused("bench sort --csv nowhere/rows.csv", 1, "nowhere/rows.csv");
+}
+
 TEST_F(Command, ChoosesTheMortonBitsThatTheSceneCallsFor) {
   std::string crowded;
   for (std::uint64_t i = 0; i < 3000; ++i) {

@@ -1,5 +1,7 @@
 #include "apps/checked_device.h"
 
+#include <unistd.h>
+
 #include <cstdio>
 
 #include "pipeline/self_check.h"
@@ -32,7 +34,11 @@ TraceOptions CheckedDevice::trace_options(const Options& options) const {
 }
 
 CheckedDevice open_device(const Options& options) {
-  CheckedDevice checked{Device({options.device, options.validate, false}), true};
+  CheckedDevice checked{Device({options.device, options.validate, false, cache_folder()}), true};
+  if (!checked.device.has_kept_pipelines() && isatty(STDERR_FILENO)) {
+    std::fprintf(stderr, "note: compiling the kernels for %s, as no earlier run has left them\n",
+                 checked.device.properties().name.c_str());
+  }
   const bool works = check_lookback(checked.device);
   checked.lookback = options.lookback == "auto" ? works : options.lookback == "on";
   return checked;

@@ -43,6 +43,8 @@ Json to_json(const RenderReport& report, const Scene& scene, const Options& opti
           {"mrays_per_s", rays / report.trace_ms / 1000},
           {"effects", effects_of(scene)},
           {"kernels", to_json(report.kernels)},
+          {"timed_ms", report.kernels.sum().ms},
+          {"copy_gb_per_s", report.kernels.copy_gb_per_s},
           {"image_hash", hex16(image_hash(report.image))},
           {"hits", report.hits},
           {"steps_per_ray", rays > 0 ? static_cast<double>(report.steps) / rays : 0.0}};
@@ -62,8 +64,8 @@ void print_render(const RenderReport& report, const Options& options, double loa
               options.height, options.samples, static_cast<double>(report.rays) / report.trace_ms / 1000,
               options.tracer.c_str());
   std::printf("  write    %9.1f ms\n", write_ms);
-  if (!report.kernels.empty() && !build.kernels.empty()) print_kernels(build.kernels);
-  if (!report.kernels.empty()) print_kernels(report.kernels);
+  if (!report.kernels.rows.empty() && !build.kernels.rows.empty()) print_kernels(build.kernels);
+  if (!report.kernels.rows.empty()) print_kernels(report.kernels);
   std::printf("picture: %s\n", options.output.c_str());
 }
 

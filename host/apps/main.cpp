@@ -58,6 +58,9 @@ void add_device(CLI::App& command, Options& options) {
   command.add_option("--device", options.device, "part of a device's name, or its index")
       ->type_name("NAME|INDEX");
   command.add_flag("--validate", options.validate, "Vulkan validation layers on; a message is a failure");
+}
+
+void add_trace_events(CLI::App& command, Options& options) {
   command.add_option("--trace-events", options.trace_events, "write every kernel as a Chrome trace event")
       ->type_name("FILE");
 }
@@ -119,7 +122,7 @@ void add_intersection(CLI::App& command, Options& options) {
       ->capture_default_str();
 }
 
-void add_picture(CLI::App& command, Options& options) {
+void add_view(CLI::App& command, Options& options) {
   command.add_option("--size", options.size, "pixels, default 1024x768")->type_name("WxH");
   command
       .add_option("--camera", options.camera,
@@ -127,6 +130,10 @@ void add_picture(CLI::App& command, Options& options) {
       ->type_name("X,Y,Z,X,Y,Z[,FOV]")
       ->delimiter(',')
       ->expected(6, 7);
+}
+
+void add_picture(CLI::App& command, Options& options) {
+  add_view(command, options);
   command.add_option("--spp", options.samples, "samples per pixel")
       ->check(CLI::Range(1u, 65536u))
       ->capture_default_str();
@@ -153,6 +160,22 @@ void add_stability(CLI::App& command, Options& options) {
       ->capture_default_str();
   add_ploc(command, options);
   add_device(command, options);
+  add_trace_events(command, options);
+}
+
+void add_bench(CLI::App& command, Options& options) {
+  command.add_option("WHAT", options.bench)->required()->check(CLI::IsMember({"sort", "build", "trace"}));
+  command.add_option("SCENE", options.scene, "of the trace")->capture_default_str();
+  command.add_option("--most", options.most, "keys or triangles of the largest size")
+      ->check(CLI::Range(4u, 1u << 26))
+      ->capture_default_str();
+  command.add_option("--runs", options.runs, "that count, after a warm-up until the median is stable")
+      ->check(CLI::Range(1u, 10000u))
+      ->capture_default_str();
+  command.add_option("--csv", options.csv, "write the table to FILE")->type_name("FILE");
+  add_view(command, options);
+  add_ploc(command, options);
+  add_device(command, options);
 }
 
 int run(int argc, char** argv) {
@@ -164,12 +187,14 @@ int run(int argc, char** argv) {
   CLI::App* const render = app.add_subcommand("render", "build, trace, write the picture");
   render->add_option("-o,--output", options.output)->capture_default_str();
   render->add_option("--tracer", options.tracer)->check(CLI::IsMember({"gpu", "cpu"}))->capture_default_str();
+  render->add_flag("--kernels", options.kernels, "print the time of every kernel; takes the frame once more");
   add_picture(*render, options);
   CLI::App* const build =
       app.add_subcommand("build", "build only: time of every kernel, quality of the tree");
   build->add_option("--runs", options.runs, "after a warm-up")
       ->check(CLI::Range(1u, 10000u))
       ->capture_default_str();
+  build->add_flag("--rounds", options.rounds, "a table of the rounds of PLOC on the device");
   CLI::App* const lockstep =
       app.add_subcommand("lockstep", "every stage on device and CPU; the first difference, or none");
   add_picture(*lockstep, options);
@@ -192,7 +217,9 @@ int run(int argc, char** argv) {
   CLI::App* const stability =
       app.add_subcommand("stability", "hard cases and hard rays, with every intersection test");
   add_stability(*stability, options);
-  for (CLI::App* const command : {render, lockstep, compare}) add_intersection(*command, options);
+  CLI::App* const bench = app.add_subcommand("bench", "times of sort, build or trace, results checked first");
+  add_bench(*bench, options);
+  for (CLI::App* const command : {render, lockstep, compare, bench}) add_intersection(*command, options);
   for (CLI::App* const command : {render, compare})
     command->add_option("--runs", options.frames, "build and trace so many times; times are medians")
         ->check(CLI::Range(1u, 10000u))
@@ -204,11 +231,12 @@ int run(int argc, char** argv) {
     add_scene(*command, options);
     add_ploc(*command, options);
     add_device(*command, options);
+    add_trace_events(*command, options);
   }
   CLI::App* const scenes = app.add_subcommand("scenes", "the built-in scenes");
   scenes->add_flag("--hard", options.hard, "the inputs that are hard on builders and tracers instead");
   CLI::App* const devices = app.add_subcommand("devices", "the Vulkan devices");
-  for (CLI::App* const command : {render, build, lockstep, compare, stability, scenes, devices})
+  for (CLI::App* const command : {render, build, lockstep, compare, stability, bench, scenes, devices})
     add_common(*command, options);
 
   try {
@@ -223,7 +251,8 @@ int run(int argc, char** argv) {
     std::fprintf(stderr, "coppice: %s\n", error.what());
     return 2;
   }
-  for (const std::string& file : {options.json, options.trace_events, options.markdown, options.plot}) {
+  for (const std::string& file :
+       {options.json, options.trace_events, options.markdown, options.plot, options.csv}) {
     if (!file.empty() && file != "-") coppice::check_writable(file);
   }
   if (*render) return run_render(options);
@@ -231,6 +260,7 @@ int run(int argc, char** argv) {
   if (*lockstep) return run_lockstep(options);
   if (*compare) return run_compare(options);
   if (*stability) return run_stability(options);
+  if (*bench) return run_bench(options);
   if (*scenes) return run_scenes(options);
   return run_devices(options);
 }

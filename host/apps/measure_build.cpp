@@ -49,10 +49,12 @@ void describe_tree(BuildReport& report, std::span<const Node> nodes) {
   report.tree_hash = tree_hash(nodes);
 }
 
-KernelSplit split_time(GpuExecutor& executor, std::span<const Step> steps, double limit_seconds) {
-  KernelSplit split{measurable_steps(executor, steps), {}};
-  split.times = executor.record(split.steps, Timestamps::every_step).submit_and_wait(limit_seconds);
-  return split;
+RunCounts counts_of_build(const GpuExecutor& executor, const BuildPlan& plan) {
+  const BuildState state = executor.read(plan.state)[0];
+  RunCounts counts;
+  counts.active_count = state.active_count;
+  counts.rounds = executor.read(Slot<PlocRound>{plan.rounds.place, state.round_count + 1});
+  return counts;
 }
 
 BuildReport measure_gpu_build(CheckedDevice& device, GpuExecutor& executor, const BuildPlan& plan,
@@ -76,7 +78,7 @@ BuildReport measure_gpu_build(CheckedDevice& device, GpuExecutor& executor, cons
     progress.step();
   }
   const KernelSplit split = split_time(executor, chain.steps(), limit_seconds);
-  write_trace_events(options.trace_events, split.steps, split.times);
+  write_trace_events(options.trace_events, split);
   check_state(executor, plan);
 
   report.device = device.device.properties().name;
@@ -84,8 +86,10 @@ BuildReport measure_gpu_build(CheckedDevice& device, GpuExecutor& executor, cons
   report.build_ms = spread_of(build_ms);
   report.wall_ms = spread_of(wall_ms);
   report.runs = options.runs;
-  report.kernels = kernel_times(split.steps, split.times);
-  for (const KernelTime& kernel : report.kernels) report.dispatches += kernel.dispatches;
+  const RunCounts counts = counts_of_build(executor, plan);
+  const auto limit = find_copy_limit(device.device, largest_dispatch(split, counts));
+  report.kernels = kernel_table(split, counts, limit, report.build_ms.median);
+  if (options.rounds) report.ploc_rounds = ploc_round_times(split, counts);
   report.rounds = executor.read(plan.state)[0].round_count;
   report.rounds_bound = plan.rounds_bound;
   describe_tree(report, read_tree(executor, plan));

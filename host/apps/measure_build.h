@@ -23,12 +23,8 @@ BuildReport report_for(const Options& options, const Scene& scene, std::span<con
 // Quality and hash of the tree, added to the report.
 void describe_tree(BuildReport& report, std::span<const Node> nodes);
 
-// Splits the time of `steps`, which the device has run before, by kernel.
-struct KernelSplit {
-  std::vector<Step> steps;
-  Recorder::Times times;
-};
-KernelSplit split_time(GpuExecutor& executor, std::span<const Step> steps, double limit_seconds);
+// What the build of the last submit left that the models of its stages need.
+RunCounts counts_of_build(const GpuExecutor& executor, const BuildPlan& plan);
 
 // Builds options.runs times after a warm-up, measures, and describes the tree. `trace_events` may be empty.
 BuildReport measure_gpu_build(CheckedDevice& device, GpuExecutor& executor, const BuildPlan& plan,

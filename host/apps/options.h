@@ -19,8 +19,14 @@ struct Options {
   std::uint32_t radius = 16;
   std::string morton_bits = "auto";  // auto, 30, 60
   std::uint32_t runs = 5;            // of `build`
+  bool rounds = false;               // of `build`: a table of the rounds of PLOC
   std::uint32_t frames = 1;          // of `render`: the whole frame so many times
+  bool kernels = false;              // of `render`: once more, to print the time of every kernel
   std::string lookback = "auto";     // auto, on, off
+
+  std::string bench;              // sort, build, trace
+  std::uint32_t most = 1u << 20;  // of `bench`: keys or triangles of the largest size
+  std::string csv;                // file; empty: none
 
   std::vector<std::string> scenes, builders;  // of `compare`; empty: the default ones, all
   double timeout_seconds = 60;
@@ -49,6 +55,7 @@ int run_build(const Options& options);
 int run_lockstep(const Options& options);
 int run_compare(const Options& options);
 int run_stability(const Options& options);
+int run_bench(const Options& options);
 int run_scenes(const Options& options);
 int run_devices(const Options& options);
 

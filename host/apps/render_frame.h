@@ -8,16 +8,17 @@ struct RenderReport {
   BuildReport build;
   double trace_ms = 0;
   std::uint64_t rays = 0, hits = 0, steps = 0;
-  std::string trace_device;         // name and driver
-  std::vector<KernelTime> kernels;  // of the trace, on a device
-  std::vector<uint> image;          // RGBA8
+  std::string trace_device;  // name and driver
+  KernelTable kernels;       // of the trace, on a device
+  std::vector<uint> image;   // RGBA8
 };
 
 // Builds and traces in one submit, nothing read back in between; with a CPU builder its tree is uploaded
 // before.
 RenderReport render_on_device(CheckedDevice& device, const Scene& scene, const Options& options);
 
-// Traces by the independent CPU tracer; shades by the twins. With a builder on the device `device` builds the tree.
+// Traces by the independent CPU tracer; shades by the twins. With a builder on the device `device` builds the
+// tree.
 RenderReport render_on_host(CheckedDevice* device, const Scene& scene, const Options& options);
 
 }  // namespace coppice

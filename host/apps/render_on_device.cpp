@@ -10,8 +10,6 @@ namespace {
 
 constexpr double limit_seconds = 600;
 
-std::uint64_t wide(uvec2 words) { return std::uint64_t{words.y} << 32 | words.x; }
-
 void upload_tree(GpuExecutor& executor, const TreeSlots& tree, const Bvh& bvh) {
   if (!bvh.nodes.empty() && bvh.nodes[0].height > TRACE_STACK_LIMIT) {
     throw DeviceError("the tree is " + std::to_string(bvh.nodes[0].height) +
@@ -65,19 +63,25 @@ void measure_frames(GpuExecutor& executor, const FrameChain& chain, const TreeSl
   report.build.runs = runs;
 }
 
-void split_kernels(GpuExecutor& executor, const FrameChain& chain, bool builds, const Options& options,
+void split_kernels(CheckedDevice& device, GpuExecutor& executor, const FrameChain& chain,
+                   const BuildPlan* build, const TracePlan& trace, const Options& options,
                    RenderReport& report) {
   const std::span<const Step> steps = chain.steps;
-  if (builds) {
-    const KernelSplit split = split_time(executor, steps.first(chain.build_steps), limit_seconds);
-    report.build.kernels = kernel_times(split.steps, split.times);
-    for (const KernelTime& kernel : report.build.kernels) report.build.dispatches += kernel.dispatches;
+  KernelSplit build_split;
+  RunCounts build_counts;
+  if (build) {
+    build_split = split_time(executor, steps.first(chain.build_steps), limit_seconds);
+    build_counts = counts_of_build(executor, *build);
   }
   const KernelSplit split = split_time(executor, steps.subspan(chain.build_steps), limit_seconds);
-  report.kernels = kernel_times(split.steps, split.times);
+  const RunCounts counts = counts_of_trace(executor.read(trace.counters)[0]);
+  const auto limit = find_copy_limit(
+      device.device, std::max(largest_dispatch(build_split, build_counts), largest_dispatch(split, counts)));
+  report.kernels = kernel_table(split, counts, limit, report.trace_ms);
+  if (build)
+    report.build.kernels = kernel_table(build_split, build_counts, limit, report.build.build_ms.median);
   if (options.trace_events.empty()) return;
-  const KernelSplit whole = split_time(executor, steps, limit_seconds);
-  write_trace_events(options.trace_events, whole.steps, whole.times);
+  write_trace_events(options.trace_events, split_time(executor, steps, limit_seconds));
 }
 
 void describe_build(const CheckedDevice& device, const GpuExecutor& executor, const BuildPlan& build,
@@ -119,15 +123,15 @@ RenderReport render_on_device(CheckedDevice& device, const Scene& scene, const O
   warm_up(executor, device_build, tree, trace);
   const FrameChain chain = frame_chain(executor, device_build, tree, trace);
   measure_frames(executor, chain, tree, builds, options.frames, report);
-  const TraceCounters counters = executor.read(trace.counters)[0];
-  report.rays = wide(counters.rays);
-  report.hits = wide(counters.hits);
-  report.steps = wide(counters.steps);
+  const RunCounts counts = counts_of_trace(executor.read(trace.counters)[0]);
+  report.rays = counts.rays;
+  report.hits = counts.hits;
+  report.steps = counts.steps;
   report.image = executor.read(trace.image);
   for (const std::uint64_t bytes : layout.block_bytes()) report.build.device_bytes += bytes;
   if (builds) describe_build(device, executor, *build, report.build);
-  if (!options.json.empty() || !options.trace_events.empty()) {
-    split_kernels(executor, chain, builds, options, report);
+  if (options.kernels || !options.json.empty() || !options.trace_events.empty()) {
+    split_kernels(device, executor, chain, device_build, trace, options, report);
   }
   return report;
 }

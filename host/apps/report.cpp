@@ -12,12 +12,6 @@
 
 namespace coppice {
 
-namespace {
-
-const char* step_name(const Step& step) { return step.stage ? step.stage->name : "clear"; }
-
-}  // namespace
-
 void write_text(const std::string& path, const std::string& text) {
   // Whole or not at all, where the target is a file and no device or pipe.
   namespace fs = std::filesystem;
@@ -33,47 +27,6 @@ void write_text(const std::string& path, const std::string& text) {
   const std::string reason = error ? error.message() : std::strerror(errno);
   if (replaces) fs::remove(written, error);
   throw InputError("cannot write '" + path + "': " + reason);
-}
-
-std::vector<Step> measurable_steps(const GpuExecutor& executor, std::span<const Step> steps) {
-  std::vector<Step> kept;
-  for (const Step& step : steps) {
-    if (!step.stage && step.clear_bytes == 0) continue;
-    if (step.indirect && executor.read(Slot<uint>{step.place, 1})[0] == 0) continue;
-    kept.push_back(step);
-  }
-  return kept;
-}
-
-std::vector<KernelTime> kernel_times(std::span<const Step> steps, const Recorder::Times& times) {
-  std::vector<KernelTime> kernels;
-  for (std::size_t i = 0; i < steps.size() && i < times.steps_ms.size(); ++i) {
-    const std::string name = step_name(steps[i]);
-    auto row = std::ranges::find(kernels, name, &KernelTime::name);
-    if (row == kernels.end()) row = kernels.insert(kernels.end(), {name, 0, 0});
-    row->ms += times.steps_ms[i];
-    ++row->dispatches;
-  }
-  return kernels;
-}
-
-Json to_json(std::span<const KernelTime> kernels) {
-  Json rows = Json::array();
-  for (const KernelTime& kernel : kernels) {
-    rows.push_back({{"name", kernel.name}, {"ms", kernel.ms}, {"dispatches", kernel.dispatches}});
-  }
-  return rows;
-}
-
-void print_kernels(std::span<const KernelTime> kernels) {
-  double total = 0;
-  for (const KernelTime& kernel : kernels) total += kernel.ms;
-  std::printf("  %-18s %10s %7s %11s\n", "kernel", "ms", "share", "dispatches");
-  for (const KernelTime& kernel : kernels) {
-    std::printf("  %-18s %10.3f %6.1f%% %11u\n", kernel.name.c_str(), kernel.ms, 100 * kernel.ms / total,
-                kernel.dispatches);
-  }
-  std::printf("  %-18s %10.3f         (with a timestamp after each dispatch)\n", "sum", total);
 }
 
 Spread spread_of(std::vector<double> values) {
@@ -97,12 +50,15 @@ Json to_json(const BuildReport& report) {
                {"build_ms_max", report.build_ms.greatest},
                {"runs", report.runs},
                {"wall_ms", report.wall_ms.median}};
-  if (!report.kernels.empty()) {
+  if (!report.kernels.rows.empty()) {
     json["kernels"] = to_json(report.kernels);
-    json["dispatches"] = report.dispatches;
+    json["dispatches"] = report.kernels.sum().dispatches;
+    json["timed_ms"] = report.kernels.sum().ms;
+    json["copy_gb_per_s"] = report.kernels.copy_gb_per_s;
     json["device_bytes"] = report.device_bytes;
   }
   if (report.builder == "gd16-early") json["leaf_size"] = report.leaf_size;
+  if (!report.ploc_rounds.empty()) json["ploc_rounds"] = to_json(report.ploc_rounds);
   json["rounds"] = report.rounds;
   json["rounds_bound"] = report.rounds_bound;
   json["nodes"] = report.quality.nodes;
@@ -120,7 +76,8 @@ void print_build(const BuildReport& report) {
   if (report.inactive) std::printf(" (%llu inactive)", static_cast<unsigned long long>(report.inactive));
   std::printf(", %s on %s%s%s\n", report.builder.c_str(), report.device.c_str(),
               report.driver.empty() ? "" : ", ", report.driver.c_str());
-  if (!report.kernels.empty()) print_kernels(report.kernels);
+  if (!report.kernels.rows.empty()) print_kernels(report.kernels);
+  if (!report.ploc_rounds.empty()) print_rounds(report.ploc_rounds);
   std::printf("  build %.3f ms (%.3f to %.3f in %u runs)", report.build_ms.median, report.build_ms.least,
               report.build_ms.greatest, report.runs);
   if (report.rounds_bound) std::printf(", %u rounds of at most %u", report.rounds, report.rounds_bound);
@@ -139,13 +96,13 @@ void write_json(const std::string& path, const Json& json) {
   }
 }
 
-void write_trace_events(const std::string& path, std::span<const Step> steps, const Recorder::Times& times) {
+void write_trace_events(const std::string& path, const KernelSplit& split) {
   if (path.empty()) return;
   Json events = Json::array();
   double start_us = 0;
-  for (std::size_t i = 0; i < times.steps_ms.size(); ++i) {
-    const double duration_us = times.steps_ms[i] * 1000;
-    events.push_back({{"name", step_name(steps[i])},
+  for (std::size_t i = 0; i < split.times.steps_ms.size(); ++i) {
+    const double duration_us = split.times.steps_ms[i] * 1000;
+    events.push_back({{"name", step_name(split.steps[i])},
                       {"ph", "X"},
                       {"ts", start_us},
                       {"dur", duration_us},

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdlib>
 #include <cstring>
 
+#include "gpu/pipeline_store.h"
 #include "gpu/vulkan_context.h"
 
 namespace coppice {
@@ -236,15 +238,28 @@ Device::Device(const DeviceOptions& options) : context_(std::make_unique<VulkanC
       listings.push_back(listing_of(physical, static_cast<std::uint32_t>(listings.size())));
     context.physical = std::move(all[choose_device(listings, options.select)]);
     make_device(context);
+    load_pipelines(context, options.pipeline_folder);
   } catch (const vk::SystemError& error) {
     throw DeviceError(std::string("Vulkan: ") + error.what());
   }
 }
 
-Device::~Device() = default;
+Device::~Device() {
+  if (context_) store_pipelines(*context_);
+}
 Device::Device(Device&&) noexcept = default;
 
 const DeviceProperties& Device::properties() const { return context_->properties; }
+
+bool Device::has_kept_pipelines() const { return !context_->kept_pipelines.empty(); }
+
+std::filesystem::path cache_folder() {
+  // The XDG specification says that a relative path is to be ignored.
+  const char* const xdg = std::getenv("XDG_CACHE_HOME");
+  if (xdg && std::filesystem::path(xdg).is_absolute()) return std::filesystem::path(xdg) / "coppice";
+  const char* const home = std::getenv("HOME");
+  return home && *home ? std::filesystem::path(home) / ".cache" / "coppice" : std::filesystem::path();
+}
 
 std::vector<std::string> Device::take_validation_messages() {
   const std::lock_guard lock(context_->message_mutex);

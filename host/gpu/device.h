@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -32,6 +33,7 @@ struct DeviceOptions {
   std::string select;          // part of a name or an index; empty: discrete before integrated before CPU
   bool validate = false;       // validation layers, synchronization validation included
   bool force_staging = false;  // copy through staging buffers even where memory is shared (for tests)
+  std::filesystem::path pipeline_folder{};  // compiled pipelines are kept here between runs; empty: nowhere
 };
 
 struct DeviceProperties {
@@ -46,6 +48,10 @@ struct DeviceProperties {
   std::uint32_t loop_turn_limit;
 };
 
+// Where programs keep what they can make again: $XDG_CACHE_HOME/coppice, or .cache/coppice in $HOME; empty
+// where neither is set.
+std::filesystem::path cache_folder();
+
 struct VulkanContext;  // gpu/vulkan_context.h, only for this folder
 
 class Device {
@@ -59,6 +65,9 @@ class Device {
 
   // What the validation layers said since the last call.
   std::vector<std::string> take_validation_messages();
+
+  // Whether the pipelines of an earlier run are at hand; false where none are kept.
+  bool has_kept_pipelines() const;
 
   VulkanContext& context() { return *context_; }
 

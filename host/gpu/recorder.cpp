@@ -47,7 +47,7 @@ vk::raii::Pipeline make_pipeline(const VulkanContext& context, const Kernel& ker
                            : vk::PipelineShaderStageCreateFlags();
   const vk::PipelineShaderStageCreateInfo stage(flags, vk::ShaderStageFlagBits::eCompute, *module, "main",
                                                 &specialization);
-  return vk::raii::Pipeline(context.device, nullptr,
+  return vk::raii::Pipeline(context.device, context.pipeline_cache,
                             vk::ComputePipelineCreateInfo({}, stage, *context.pipeline_layout));
 }
 

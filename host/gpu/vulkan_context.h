@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <mutex>
 #include <vector>
@@ -31,6 +32,9 @@ struct VulkanContext {
   std::uint64_t timestamp_mask = 0;  // the bits that count
   vk::raii::CommandPool command_pool{nullptr};
   vk::raii::PipelineLayout pipeline_layout{nullptr};  // 128 bytes of push constants, no descriptors
+  vk::raii::PipelineCache pipeline_cache{nullptr};    // none where nothing is kept
+  std::filesystem::path pipeline_file;
+  std::vector<std::uint8_t> kept_pipelines;  // what the file held; empty: nothing of use
   std::map<PipelineKey, vk::raii::Pipeline> pipelines;
   bool labels = false;  // debug labels can be recorded
   bool force_staging = false;

@@ -28,13 +28,23 @@ void append_bounds(Chain& chain, const BuildPlan& plan) {
             tiles(plan.triangle_count, PRIMITIVE_BOUNDS_TILE));
 }
 
-void append_sort(Chain& chain, const BuildPlan& plan) {
-  const std::uint32_t n = plan.triangle_count, key_words = plan.options.morton_bits / 30;
-  const std::uint32_t passes = key_words * SORT_PASSES_PER_WORD;
+void append_morton_codes(Chain& chain, const BuildPlan& plan) {
+  const std::uint32_t n = plan.triangle_count;
   chain.run(stages::morton_codes,
             {chain.at(plan.boxes), chain.at(plan.state), chain.at(plan.keys[0]), chain.at(plan.values[0]), n,
-             key_words},
+             plan.options.morton_bits / 30},
             tiles(n, MORTON_TILE));
+}
+
+void clear_sort(Chain& chain, const BuildPlan& plan) {
+  chain.clear(plan.histogram);
+  chain.clear(plan.sort_status);
+  chain.clear(plan.sort_tickets);
+}
+
+void append_sort_passes(Chain& chain, const BuildPlan& plan) {
+  const std::uint32_t n = plan.triangle_count, key_words = plan.options.morton_bits / 30;
+  const std::uint32_t passes = key_words * SORT_PASSES_PER_WORD;
   chain.run(stages::sort_histogram, {chain.at(plan.keys[0]), chain.at(plan.histogram), n, key_words},
             tiles(n, SORT_HISTOGRAM_TILE, key_words));
   chain.run(stages::sort_digit_scan, {chain.at(plan.histogram), passes, 0}, {passes, 1, 1});
@@ -130,15 +140,19 @@ const NamedDeviceBuilder* find_device_builder(std::string_view name) {
   return nullptr;
 }
 
+void append_sort(Chain& chain, const BuildPlan& plan) {
+  clear_sort(chain, plan);
+  append_sort_passes(chain, plan);
+}
+
 void append_build(Chain& chain, const BuildPlan& plan) {
   chain.clear(plan.state);
   chain.clear(plan.rounds);
-  chain.clear(plan.histogram);
-  chain.clear(plan.sort_status);
-  chain.clear(plan.sort_tickets);
   chain.clear(plan.arrivals);
+  clear_sort(chain, plan);
   append_bounds(chain, plan);
-  append_sort(chain, plan);
+  append_morton_codes(chain, plan);
+  append_sort_passes(chain, plan);
   if (plan.options.builder == DeviceBuilder::ploc)
     append_ploc(chain, plan);
   else

@@ -78,6 +78,13 @@ TreeSlots plan_tree(Layout& layout, std::uint32_t triangle_count, std::uint64_t 
 // more than max_triangles.
 BuildPlan plan_build(Layout& layout, std::uint32_t triangle_count, const BuildOptions& options);
 
+// Only the sort's slots of a build of `key_count` pairs, and its state. Throws LayoutError if one does not
+// fit a block.
+BuildPlan plan_sort(Layout& layout, std::uint32_t key_count, const BuildOptions& options);
+
+// The pairs in keys[0] and values[0], sorted stably by key, in place.
+void append_sort(Chain& chain, const BuildPlan& plan);
+
 // Triangles to tree: bounds, Morton codes, sort, and the builder of the options.
 void append_build(Chain& chain, const BuildPlan& plan);
 

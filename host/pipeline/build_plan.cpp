@@ -29,7 +29,29 @@ void add_hploc_slots(Layout& layout, BuildPlan& plan) {
   plan.arrivals = layout.add<uint>("arrivals", plan.triangle_count);
 }
 
+void add_sort_status(Layout& layout, BuildPlan& plan) {
+  const std::uint32_t passes = plan.options.morton_bits / 30 * SORT_PASSES_PER_WORD;
+  plan.histogram = layout.add<uint>("histogram", passes * SORT_DIGITS);
+  plan.sort_status = layout.add<uint>(
+      "sort_status", std::uint64_t{passes} * divide_up(plan.triangle_count, SORT_TILE) * SORT_DIGITS);
+  plan.sort_tickets = layout.add<uint>("sort_tickets", passes);
+}
+
 }  // namespace
+
+BuildPlan plan_sort(Layout& layout, std::uint32_t key_count, const BuildOptions& options) {
+  BuildPlan plan;
+  plan.options = options;
+  plan.triangle_count = key_count;
+  plan.state = layout.add<BuildState>("state", 1);
+  for (int i = 0; i < 2; ++i) {
+    plan.keys[i] =
+        layout.add<uint>(i ? "keys_b" : "keys_a", std::uint64_t{key_count} * options.morton_bits / 30);
+    plan.values[i] = layout.add<uint>(i ? "values_b" : "values_a", key_count);
+  }
+  add_sort_status(layout, plan);
+  return plan;
+}
 
 std::uint32_t ploc_rounds_bound(std::uint32_t clusters, std::uint32_t target) {
   if (clusters <= target) return 0;
@@ -59,7 +81,6 @@ BuildPlan plan_build(Layout& layout, std::uint32_t triangle_count, const BuildOp
   BuildPlan plan;
   const std::uint32_t n = triangle_count;
   const std::uint32_t key_words = options.morton_bits / 30;
-  const std::uint32_t passes = key_words * SORT_PASSES_PER_WORD;
   plan.options = options;
 
   static_cast<TreeSlots&>(plan) = plan_tree(layout, n, n == 0 ? 0 : 2 * std::uint64_t{n} - 1);
@@ -68,10 +89,7 @@ BuildPlan plan_build(Layout& layout, std::uint32_t triangle_count, const BuildOp
     plan.keys[i] = layout.add<uint>(i ? "keys_b" : "keys_a", std::uint64_t{n} * key_words);
     plan.values[i] = layout.add<uint>(i ? "values_b" : "values_a", n);
   }
-  plan.histogram = layout.add<uint>("histogram", passes * SORT_DIGITS);
-  plan.sort_status =
-      layout.add<uint>("sort_status", std::uint64_t{passes} * divide_up(n, SORT_TILE) * SORT_DIGITS);
-  plan.sort_tickets = layout.add<uint>("sort_tickets", passes);
+  add_sort_status(layout, plan);
   if (options.builder == DeviceBuilder::ploc)
     add_ploc_slots(layout, plan);
   else

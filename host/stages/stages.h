@@ -1,6 +1,7 @@
 #pragma once
 
 #include "interface/bounds.h"
+#include "interface/copy.h"
 #include "interface/hploc.h"
 #include "interface/morton.h"
 #include "interface/ploc.h"
@@ -29,7 +30,8 @@
   STAGE(trace_brute_force, TraceBruteForceArgs) \
   STAGE(bounce_rays, BounceRaysArgs)            \
   STAGE(shade, ShadeArgs)                       \
-  STAGE(resolve, ResolveArgs)
+  STAGE(resolve, ResolveArgs)                   \
+  STAGE(copy_words, CopyWordsArgs)
 
 namespace coppice {
 

@@ -1,0 +1,67 @@
+#include <algorithm>
+
+#include "analysis/compare.h"
+#include "apps/bench.h"
+#include "apps/frame.h"
+#include "apps/measure_build.h"
+#include "apps/ray_tracing.h"
+#include "builders/registry.h"
+#include "scene/scene_source.h"
+
+namespace coppice {
+
+namespace {
+
+constexpr std::size_t checked_rays = 20000;
+
+std::vector<Ray> rays_through(const Film& film) {
+  std::vector<Ray> rays;
+  for (std::uint32_t y = 0; y < film.height; ++y) {
+    for (std::uint32_t x = 0; x < film.width; ++x) {
+      const vec3 direction = film.corner + film.right * (static_cast<float>(x) + 0.5f) +
+                             film.down * (static_cast<float>(y) + 0.5f);
+      rays.push_back({film.position, 0, direction, std::numeric_limits<float>::infinity()});
+    }
+  }
+  return rays;
+}
+
+// The first rays, against the twins. A GPU may round a division otherwise, so there a few triangles may
+// differ.
+void check_hits(RayTracing& tracing, std::span<const Ray> rays, const TraceOptions& trace, bool exact) {
+  const auto some = rays.first(std::min(rays.size(), checked_rays));
+  const TracedRays device = tracing.on_device(some, trace), host = tracing.by_twins(some, trace);
+  if (!device.error.empty()) throw DeviceError(device.error);
+  const HitDifference difference = compare_hits(host.hits, device.hits);
+  if (exact ? difference.count > 0 : difference.other_triangle > some.size() / 1000)
+    throw DeviceError("trace: " + std::to_string(difference.count) + " of " + std::to_string(some.size()) +
+                      " hits are not the twin's");
+}
+
+}  // namespace
+
+void bench_trace(CheckedDevice& device, const Options& options, const AddRow& add) {
+  const Scene scene = open_scene(options.scene);
+  const SceneArrays arrays = scene_arrays(scene);
+  const Bvh bvh = find_cpu_builder("ploc-parallel")
+                      .build(arrays.triangles, {options.radius, morton_bits_for(options, arrays.triangles)});
+  const TraceOptions trace = device.trace_options(options);
+  const std::vector<Ray> primary =
+      rays_through(make_film(scene, options.camera, options.width, options.height, 1));
+  RayTracing tracing(device, bvh.nodes, arrays.triangles, static_cast<std::uint32_t>(primary.size()));
+  std::vector<Ray> bounced = tracing.bounce(primary, trace, 1);
+  std::erase_if(bounced,
+                [](const Ray& ray) { return ray.direction == vec3(0); });  // of rays that hit nothing
+  for (const std::vector<Ray>* const rays : {&primary, static_cast<const std::vector<Ray>*>(&bounced)}) {
+    const char* const name = rays == &primary ? "trace_primary" : "trace_diffuse";
+    if (rays->empty()) continue;
+    check_hits(tracing, *rays, trace, device.device.properties().type == DeviceType::cpu);
+    add(bench_row(name, scene.name, rays->size(), measure_steady({.runs = options.runs}, [&] {
+                    const TracedRays traced = tracing.on_device(*rays, trace);
+                    if (!traced.error.empty()) throw DeviceError(traced.error);
+                    return traced.ms;
+                  })));
+  }
+}
+
+}  // namespace coppice

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <optional>
+
+#include "apps/kernel_times.h"
+
+namespace coppice {
+
+// One round of PLOC that had dispatches of its own, or all rounds of the finish together.
+struct PlocRoundTime {
+  std::uint32_t round, clusters, merged;
+  bool pair_all;                     // paired all clusters, whatever their distance
+  std::optional<double> nearest_ms;  // empty for the finish
+  double merge_ms = 0;               // without lookback, sums and scan of the tiles included
+};
+
+// From a split of the build that left `counts`.
+std::vector<PlocRoundTime> ploc_round_times(const KernelSplit& split, const RunCounts& counts);
+
+Json to_json(const std::vector<PlocRoundTime>& rounds);
+void print_rounds(const std::vector<PlocRoundTime>& rounds);
+
+}  // namespace coppice

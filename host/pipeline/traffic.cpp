@@ -1,0 +1,138 @@
+#include "pipeline/traffic.h"
+
+#include <algorithm>
+
+#include "stages/stages.h"
+
+namespace coppice {
+
+namespace {
+
+using Bytes = std::uint64_t;
+
+// The arguments of a step of this stage; null for a step of another.
+template <class Args>
+const Args* args_of(const Step& step, const Stage<Args>& stage) {
+  return step.stage == &stage ? reinterpret_cast<const Args*>(step.args.data()) : nullptr;
+}
+
+Bytes tiles(Bytes count, Bytes tile) { return (count + tile - 1) / tile; }
+
+constexpr Bytes digit_row = SORT_DIGITS * sizeof(uint);  // a tile's word for each digit
+
+Bytes sort_pass_bytes(const SortPassArgs& args) {
+  // Status words are written as aggregate and as prefix, and read by the next tile; or only read.
+  const Bytes status = digit_row * tiles(args.count, SORT_TILE) * (args.lookback ? 3 : 1);
+  return Bytes{args.count} * 2 * (4 * args.key_words + 4) + status;
+}
+
+std::optional<Bytes> sort_bytes(const Step& step) {
+  if (const auto* a = args_of(step, stages::sort_histogram)) return Bytes{a->count} * 4 * a->key_words;
+  if (const auto* a = args_of(step, stages::sort_digit_scan)) return Bytes{a->pass_count} * 2 * digit_row;
+  if (const auto* a = args_of(step, stages::sort_pass)) return sort_pass_bytes(*a);
+  if (const auto* a = args_of(step, stages::sort_tile_counts))
+    return Bytes{a->count} * 4 + tiles(a->count, SORT_TILE) * digit_row;
+  if (const auto* a = args_of(step, stages::sort_tile_scan)) return Bytes{a->tile_count} * 2 * digit_row;
+  return std::nullopt;
+}
+
+Bytes nearest_bytes(const PlocNearestArgs& args, const PlocRound& round) {
+  const Bytes clusters = round.cluster_count;
+  if (round.pair_all) return clusters * 4;
+  return clusters * (sizeof(Node) + 4) + clusters * sizeof(Node) * 2 * args.radius / PLOC_NEAREST_TILE;
+}
+
+Bytes merge_bytes(const PlocRound& round, const PlocRound& next) {
+  const Bytes merges = next.merged_before - round.merged_before;
+  return Bytes{round.cluster_count} * (4 + 2 * sizeof(Node)) + merges * sizeof(Node);
+}
+
+Bytes finish_bytes(const RunCounts& counts) {
+  const auto first =
+      std::ranges::find(counts.rounds, 0u, [](const PlocRound& r) { return r.nearest_groups.x; });
+  if (first == counts.rounds.end() || first->cluster_count == 0) return 0;
+  const Bytes clusters = first->cluster_count;
+  return clusters * sizeof(Node) + (2 * clusters - 1) * sizeof(Node);
+}
+
+std::optional<Bytes> ploc_bytes(const Step& step, const RunCounts& counts) {
+  // A round without workgroups, which is the finish's, moves nothing in these stages.
+  const auto round = [&](std::uint32_t index) {
+    const bool dispatched = index < counts.rounds.size() && counts.rounds[index].nearest_groups.x != 0;
+    return dispatched ? counts.rounds[index] : PlocRound{};
+  };
+  if (step.stage == &stages::ploc_leaves)
+    return Bytes{counts.active_count} * (4 + sizeof(Aabb) + sizeof(Node));
+  if (const auto* a = args_of(step, stages::ploc_nearest)) return nearest_bytes(*a, round(a->round));
+  if (const auto* a = args_of(step, stages::ploc_merge)) {
+    const PlocRound merged = round(a->round);
+    return merged.cluster_count == 0 ? 0 : merge_bytes(merged, counts.rounds.at(a->round + 1));
+  }
+  if (const auto* a = args_of(step, stages::ploc_tile_counts))
+    return Bytes{round(a->round).cluster_count} * 4 + Bytes{round(a->round).merge_groups.x} * 8;
+  if (const auto* a = args_of(step, stages::ploc_tile_scan))
+    return Bytes{round(a->round).merge_groups.x} * 24;
+  if (step.stage == &stages::ploc_finish) return finish_bytes(counts);
+  // A leaf is read in sorted order, and all nodes are written once; what tiles hand over is little beside it.
+  if (const auto* a = args_of(step, stages::hploc_build))
+    return Bytes{counts.active_count} * (4 + 4 * a->key_words + sizeof(Aabb) + 2 * sizeof(Node));
+  return std::nullopt;
+}
+
+// Of a sum over the whole trace, the part that `rays` of its rays have.
+Bytes share(Bytes sum, Bytes rays, const RunCounts& counts) {
+  if (counts.rays == 0) return 0;
+  return static_cast<Bytes>(static_cast<double>(sum) * static_cast<double>(rays) /
+                            static_cast<double>(counts.rays));
+}
+
+Bytes shade_bytes(const ShadeArgs& args, const RunCounts& counts) {
+  const Bytes hits = share(counts.hits, args.ray_count, counts);
+  const Bytes radiance = sizeof(vec3) * (args.sample_index == 0 ? 1 : 2);
+  return args.ray_count * (sizeof(Ray) + 4 + radiance) +
+         hits * (4 + sizeof(SurfaceMaterial) + sizeof(Triangle));
+}
+
+std::optional<Bytes> trace_bytes(const Step& step, const RunCounts& counts) {
+  constexpr Bytes ray_and_hit = sizeof(Ray) + 2 * sizeof(Hit);  // the hit is read and written
+  if (const auto* a = args_of(step, stages::camera_rays))
+    return Bytes{a->ray_count} * (sizeof(Ray) + sizeof(Hit));
+  if (const auto* a = args_of(step, stages::trace_closest)) {
+    const Bytes walked = counts.steps * 2 * sizeof(Node) + counts.hits * sizeof(Triangle);
+    return a->ray_count * ray_and_hit + share(walked, a->ray_count, counts);
+  }
+  if (const auto* a = args_of(step, stages::trace_brute_force))
+    return a->ray_count * ray_and_hit + a->triangle_count * sizeof(Triangle);
+  if (const auto* a = args_of(step, stages::bounce_rays))
+    return a->ray_count * (2 * (sizeof(Ray) + sizeof(Hit))) +
+           share(counts.hits, a->ray_count, counts) * sizeof(Triangle);
+  if (const auto* a = args_of(step, stages::shade)) return shade_bytes(*a, counts);
+  if (const auto* a = args_of(step, stages::resolve)) return Bytes{a->pixel_count} * (sizeof(vec3) + 4);
+  return std::nullopt;
+}
+
+}  // namespace
+
+RunCounts counts_of_trace(const TraceCounters& counters) {
+  const auto wide = [](uvec2 words) { return Bytes{words.y} << 32 | words.x; };
+  RunCounts counts;
+  counts.rays = wide(counters.rays);
+  counts.hits = wide(counters.hits);
+  counts.steps = wide(counters.steps);
+  return counts;
+}
+
+std::optional<std::uint64_t> modelled_bytes(const Step& step, const RunCounts& counts) {
+  if (!step.stage) return step.clear_bytes;
+  if (const auto* a = args_of(step, stages::copy_words)) return Bytes{a->quad_count} * 2 * sizeof(uvec4);
+  if (const auto* a = args_of(step, stages::primitive_bounds))
+    return Bytes{a->triangle_count} * (sizeof(Triangle) + sizeof(Aabb));
+  if (const auto* a = args_of(step, stages::morton_codes))
+    return Bytes{a->triangle_count} * (sizeof(Aabb) + 4 * a->key_words + 4);
+  std::optional<Bytes> bytes = sort_bytes(step);
+  if (!bytes) bytes = ploc_bytes(step, counts);
+  if (!bytes) bytes = trace_bytes(step, counts);
+  return bytes;
+}
+
+}  // namespace coppice

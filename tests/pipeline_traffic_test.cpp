@@ -1,0 +1,116 @@
+// The bytes that stages move by their models, against numbers worked out by hand, and the limit by copies.
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "pipeline/build.h"
+#include "pipeline/copy_limit.h"
+#include "pipeline/trace.h"
+#include "pipeline/traffic.h"
+#include "stages/stages.h"
+
+namespace coppice {
+namespace {
+
+constexpr std::uint32_t triangles = 20000;
+
+PlocRound round_of(uint clusters, uint merged_before, uint groups, uint pair_all = 0) {
+  PlocRound round{};
+  round.cluster_count = clusters;
+  round.merged_before = merged_before;
+  round.pair_all = pair_all;
+  round.nearest_groups.x = round.merge_groups.x = groups;
+  return round;
+}
+
+// 20,000 triangles of which 19,000 are active: 19,000 clusters become 3,000 and then 500 for the finish.
+RunCounts two_rounds() {
+  RunCounts counts;
+  counts.active_count = 19000;
+  counts.rounds = {round_of(19000, 0, 19), round_of(3000, 16000, 3, 1), round_of(500, 18500, 0),
+                   round_of(1, 18999, 0)};
+  return counts;
+}
+
+std::map<std::string, std::uint64_t> bytes_of(const BuildOptions& options) {
+  Layout layout;
+  const BuildPlan plan = plan_build(layout, triangles, options);
+  Chain chain({0, 0, 0, 0});
+  append_build(chain, plan);
+  std::map<std::string, std::uint64_t> bytes;
+  for (const Step& step : chain.steps()) {
+    if (step.stage) bytes[step.stage->name] += modelled_bytes(step, two_rounds()).value();
+  }
+  return bytes;
+}
+
+TEST(Traffic, OfABuildWithLookback) {
+  auto bytes = bytes_of({.radius = 16, .morton_bits = 30});
+  EXPECT_EQ(bytes["primitive_bounds"], 1200000u);               // 60 a triangle
+  EXPECT_EQ(bytes["morton_codes"], 640000u);                    // 32
+  EXPECT_EQ(bytes["sort_histogram"], 80000u);                   // 4
+  EXPECT_EQ(bytes["sort_digit_scan"], 8192u);                   // 2 KiB a pass
+  EXPECT_EQ(bytes["sort_pass"], 4u * (320000 + 2 * 3 * 1024));  // two tiles of 16,384 keys
+  EXPECT_EQ(bytes["ploc_leaves"], 1140000u);                    // 60 an active triangle
+  EXPECT_EQ(bytes["ploc_nearest"], 19000u * 37 + 3000 * 4);     // the second round pairs all
+  EXPECT_EQ(bytes["ploc_merge"], 68u * 22000 + 32 * (16000 + 2500));
+  EXPECT_EQ(bytes["ploc_finish"], 32u * 500 + 32 * 999);
+}
+
+TEST(Traffic, OfABuildWithoutLookbackAndWith60Bits) {
+  auto bytes = bytes_of({.radius = 8, .morton_bits = 60, .lookback = false});
+  EXPECT_EQ(bytes["morton_codes"], 720000u);
+  EXPECT_EQ(bytes["sort_pass"], 8u * (480000 + 2 * 1024));
+  EXPECT_EQ(bytes["sort_tile_counts"], 8u * (80000 + 2 * 1024));
+  EXPECT_EQ(bytes["sort_tile_scan"], 8u * 2 * 2048);
+  EXPECT_EQ(bytes["ploc_nearest"], 19000u * 36 + 19000 / 2 + 3000 * 4);
+  EXPECT_EQ(bytes["ploc_tile_counts"], 4u * 22000 + 8 * 22);
+  EXPECT_EQ(bytes["ploc_tile_scan"], 24u * 22);
+}
+
+TEST(Traffic, OfATraceOfTwoSamples) {
+  Layout layout;
+  const TreeSlots tree = plan_tree(layout, 100, 199);
+  TraceOptions options;
+  options.width = 40;
+  options.height = 25;
+  options.samples = 2;
+  const TracePlan plan = plan_trace(layout, tree, 1, options);
+  Chain chain({0});
+  append_trace(chain, tree, plan);
+  append_bounce(chain, tree, plan, plan, 1000, 1);
+  TraceCounters counters{};
+  counters.rays.x = 2000;
+  counters.hits.x = 500;
+  counters.steps = {30000, 1};
+  std::map<std::string, std::uint64_t> bytes;
+  for (const Step& step : chain.steps()) {
+    if (step.stage) bytes[step.stage->name] += modelled_bytes(step, counts_of_trace(counters)).value();
+  }
+  EXPECT_EQ(bytes["camera_rays"], 2000u * 48);
+  EXPECT_EQ(bytes["trace_closest"], 2000u * 64 + 64 * ((std::uint64_t{1} << 32) + 30000) + 500 * 36);
+  EXPECT_EQ(bytes["shade"], 2000u * 48 + 500 * 64 + 1000 * 12);
+  EXPECT_EQ(bytes["resolve"], 16000u);
+  EXPECT_EQ(bytes["bounce_rays"], 1000u * 96 + 250 * 36);
+}
+
+TEST(Traffic, EveryStageHasAModel) {
+  for (const StageDeclaration* stage : all_stages()) {
+    Step step;
+    step.stage = stage;
+    EXPECT_TRUE(modelled_bytes(step, {})) << stage->name << ": none in host/pipeline/traffic.cpp";
+  }
+}
+
+TEST(CopyLimit, IsLinearBetweenMeasurements) {
+  const CopyLimit limit({{1000, 1.0}, {2000, 1.5}, {8000, 4.5}});
+  EXPECT_DOUBLE_EQ(limit.ms(0), 1.0);
+  EXPECT_DOUBLE_EQ(limit.ms(1000), 1.0);
+  EXPECT_DOUBLE_EQ(limit.ms(1500), 1.25);
+  EXPECT_DOUBLE_EQ(limit.ms(4000), 2.5);
+  EXPECT_DOUBLE_EQ(limit.ms(8000), 4.5);
+  EXPECT_DOUBLE_EQ(limit.ms(16000), 9.0);
+}
+
+}  // namespace
+}  // namespace coppice
