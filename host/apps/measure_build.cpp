@@ -53,7 +53,8 @@ RunCounts counts_of_build(const GpuExecutor& executor, const BuildPlan& plan) {
   const BuildState state = executor.read(plan.state)[0];
   RunCounts counts;
   counts.active_count = state.active_count;
-  counts.rounds = executor.read(Slot<PlocRound>{plan.rounds.place, state.round_count + 1});
+  if (plan.rounds.count > 0)  // only PLOC has rounds
+    counts.rounds = executor.read(Slot<PlocRound>{plan.rounds.place, state.round_count + 1});
   return counts;
 }
 
