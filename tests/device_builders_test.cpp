@@ -56,7 +56,7 @@ class DeviceTraceOf : public DeviceTest, public testing::WithParamInterface<std:
   static void expect_hits_of_cpu_tracer_but_for_edges(Scene (*make)()) {
     const TracedScene& scene = traced_scene(make);
     const std::vector<Node> nodes = build(scene.triangles);
-    const Traced device = trace_on_device(nodes, scene.triangles, scene.rays);
+    const TracedRays device = trace_on_device(nodes, scene.triangles, scene.rays);
     EXPECT_EQ(device.error_word, 0u) << describe_error_word(device.error_word);
     std::vector<Hit> cpu(scene.rays.size());
     trace_all(nodes, scene.triangles, scene.rays, cpu);
@@ -68,7 +68,7 @@ class DeviceTraceOf : public DeviceTest, public testing::WithParamInterface<std:
 
   static void expect_hits_of_brute_force(Scene (*make)()) {
     const TracedScene& scene = traced_scene(make);
-    const Traced device = trace_on_device(build(scene.triangles), scene.triangles, scene.rays);
+    const TracedRays device = trace_on_device(build(scene.triangles), scene.triangles, scene.rays);
     EXPECT_EQ(device.error_word, 0u) << describe_error_word(device.error_word);
     const bool splits = !find_device_builder(GetParam()) && find_cpu_builder(GetParam()).splits_triangles;
     // A hit on the seam of two parts may be lost to rounding.

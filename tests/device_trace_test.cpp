@@ -39,8 +39,8 @@ TEST_F(DeviceTrace, TreeAndBruteForceGiveTheSameHits) {
   const std::vector<Triangle> triangles = random_triangles(20000, 1, 0.1f);
   const Bvh bvh = build_ploc(triangles, {});
   const std::vector<Ray> rays = random_rays(5000, 2);
-  const Traced tree = trace_on_device(bvh.nodes, triangles, rays);
-  const Traced brute = trace_on_device({}, triangles, rays);
+  const TracedRays tree = trace_on_device(bvh.nodes, triangles, rays);
+  const TracedRays brute = trace_on_device({}, triangles, rays);
   EXPECT_EQ(tree.error_word, 0u);
   EXPECT_EQ(compare_hits(tree.hits, brute.hits).count, 0u);
   EXPECT_GT(hit_count(tree.hits), 500u);
@@ -50,7 +50,7 @@ TEST_F(DeviceTrace, AgreesWithTheCpuTracerButForEdges) {
   const std::vector<Triangle> triangles = random_triangles(20000, 3, 0.1f);
   const Bvh bvh = build_ploc(triangles, {});
   const std::vector<Ray> rays = random_rays(20000, 4);
-  const Traced device = trace_on_device(bvh.nodes, triangles, rays);
+  const TracedRays device = trace_on_device(bvh.nodes, triangles, rays);
   std::vector<Hit> cpu(rays.size());
   trace_all(bvh.nodes, triangles, rays, cpu);
   const HitDifference difference = compare_hits(device.hits, cpu);
@@ -78,7 +78,7 @@ TEST_F(DeviceTrace, DirectionsWithZeroAndNegativeZeroComponents) {
       }
     }
   }
-  const Traced tree = trace_on_device(bvh.nodes, triangles, rays);
+  const TracedRays tree = trace_on_device(bvh.nodes, triangles, rays);
   EXPECT_EQ(hit_count(tree.hits), rays.size());
   EXPECT_EQ(compare_hits(tree.hits, trace_on_device({}, triangles, rays).hits).count, 0u);
 }
@@ -105,7 +105,7 @@ TEST_F(DeviceTrace, OfCoincidentTrianglesTheFirstIsHit) {
                                  {centre + normal, 0, normal, infinity}};
   TraceOptions options = test_trace_options(1, 1);
   options.visits_per_turn = 2;
-  const Traced traced = trace_on_device(tree.nodes, triangles, rays, options);
+  const TracedRays traced = trace_on_device(tree.nodes, triangles, rays, options);
   EXPECT_EQ(traced.error_word, 0u) << describe_error_word(traced.error_word);
   EXPECT_EQ(traced.hits[0].triangle, 0u);
   EXPECT_EQ(traced.hits[1].triangle, NO_TRIANGLE);
@@ -121,7 +121,7 @@ TEST_F(DeviceTrace, InARowOfShrinkingGapsEachIsHit) {
     const vec3 normal(u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x);
     rays.push_back({t.a * 0.25f + t.b * 0.25f + t.c * 0.5f + normal, 0, -normal, infinity});
   }
-  const Traced traced = trace_on_device(tree.nodes, triangles, rays);
+  const TracedRays traced = trace_on_device(tree.nodes, triangles, rays);
   EXPECT_EQ(traced.error_word, 0u);
   EXPECT_EQ(hit_count(traced.hits), rays.size());
   std::vector<Hit> cpu(rays.size());
@@ -133,7 +133,7 @@ TEST_F(DeviceTrace, TooFewTurnsAreReportedByName) {
   const std::vector<Triangle> triangles = random_triangles(2000, 3, 0.5f);
   TraceOptions options = test_trace_options(1, 1);
   options.max_turns = 5;
-  const Traced traced =
+  const TracedRays traced =
       trace_on_device(build_ploc(triangles, {}).nodes, triangles, random_rays(100, 1), options);
   EXPECT_NE(describe_error_word(traced.error_word).find("trace_closest"), std::string::npos);
 }
@@ -157,7 +157,7 @@ TEST_F(DeviceTrace, ATreeAsDeepAsTheStackIsTracedAndOneDeeperIsRefused) {
   const std::vector<Triangle> triangles = random_triangles(TRACE_STACK_LIMIT + 2, 4, 0.5f);
   const std::vector<Ray> rays = random_rays(500, 5);
   const auto fits = std::span(triangles).first(TRACE_STACK_LIMIT + 1);
-  const Traced deep = trace_on_device(ladder(fits), fits, rays);
+  const TracedRays deep = trace_on_device(ladder(fits), fits, rays);
   EXPECT_EQ(deep.error_word, 0u);
   EXPECT_EQ(compare_hits(deep.hits, trace_on_device({}, fits, rays).hits).count, 0u);
   EXPECT_EQ(trace_on_device(ladder(triangles), triangles, rays).error_word, ERROR_TREE_TOO_DEEP);

@@ -4,9 +4,10 @@
 #include "apps/bench.h"
 #include "apps/frame.h"
 #include "apps/measure_build.h"
-#include "apps/ray_tracing.h"
 #include "builders/registry.h"
+#include "pipeline/ray_tracing.h"
 #include "scene/scene_source.h"
+#include "stages/errors.h"
 
 namespace coppice {
 
@@ -31,7 +32,7 @@ std::vector<Ray> rays_through(const Film& film) {
 void check_hits(RayTracing& tracing, std::span<const Ray> rays, const TraceOptions& trace, bool exact) {
   const auto some = rays.first(std::min(rays.size(), checked_rays));
   const TracedRays device = tracing.on_device(some, trace), host = tracing.by_twins(some, trace);
-  if (!device.error.empty()) throw DeviceError(device.error);
+  if (device.error_word) throw DeviceError(describe_error_word(device.error_word));
   const HitDifference difference = compare_hits(host.hits, device.hits);
   if (exact ? difference.count > 0 : difference.other_triangle > some.size() / 1000)
     throw DeviceError("trace: " + std::to_string(difference.count) + " of " + std::to_string(some.size()) +
@@ -48,7 +49,7 @@ void bench_trace(CheckedDevice& device, const Options& options, const AddRow& ad
   const TraceOptions trace = device.trace_options(options);
   const std::vector<Ray> primary =
       rays_through(make_film(scene, options.camera, options.width, options.height, 1));
-  RayTracing tracing(device, bvh.nodes, arrays.triangles, static_cast<std::uint32_t>(primary.size()));
+  RayTracing tracing(device.device, bvh.nodes, arrays.triangles, static_cast<std::uint32_t>(primary.size()));
   std::vector<Ray> bounced = tracing.bounce(primary, trace, 1);
   std::erase_if(bounced,
                 [](const Ray& ray) { return ray.direction == vec3(0); });  // of rays that hit nothing
@@ -58,7 +59,7 @@ void bench_trace(CheckedDevice& device, const Options& options, const AddRow& ad
     check_hits(tracing, *rays, trace, device.device.properties().type == DeviceType::cpu);
     add(bench_row(name, scene.name, rays->size(), measure_steady({.runs = options.runs}, [&] {
                     const TracedRays traced = tracing.on_device(*rays, trace);
-                    if (!traced.error.empty()) throw DeviceError(traced.error);
+                    if (traced.error_word) throw DeviceError(describe_error_word(traced.error_word));
                     return traced.ms;
                   })));
   }

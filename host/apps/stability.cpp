@@ -8,8 +8,9 @@
 #include "analysis/validate.h"
 #include "apps/frame.h"
 #include "apps/measure_build.h"
-#include "apps/ray_tracing.h"
 #include "builders/ploc.h"
+#include "pipeline/ray_tracing.h"
+#include "stages/errors.h"
 #include "stages/lockstep_executor.h"
 
 namespace coppice {
@@ -83,7 +84,7 @@ VariantResult trace_variant(RayTracing& tracing, const IntersectionVariant& vari
   options.box_test = variant.box_test;
   VariantResult result{&variant, {}, false, ""};
   const TracedRays traced = tracing.on_device(batched.rays, options);
-  result.error = traced.error;
+  result.error = describe_error_word(traced.error_word);
   if (!result.error.empty()) return result;
   const TracedRays twins = tracing.by_twins(batched.rays, options);
   result.bits_equal =
@@ -155,7 +156,7 @@ StabilityCase examine_case(CheckedDevice& device, const HardCase& hard_case, con
     batched.add(inside, inside_rays(centre_of(nodes[0]), triangles, stability.rays, stability.seed));
   }
   const std::vector<Ray> first = hard_rays(RayKind::RANDOM, triangles, nodes, stability.rays, stability.seed);
-  RayTracing tracing(device, nodes, triangles,
+  RayTracing tracing(device.device, nodes, triangles,
                      static_cast<std::uint32_t>(batched.rays.size() + first.size()));
   TraceOptions trace_options = device.trace_options(options);
   trace_options.brute_force = false;

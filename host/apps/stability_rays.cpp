@@ -3,11 +3,12 @@
 
 #include "analysis/hard_rays.h"
 #include "apps/progress.h"
-#include "apps/ray_tracing.h"
 #include "apps/report.h"
 #include "apps/stability.h"
 #include "builders/ploc.h"
+#include "pipeline/ray_tracing.h"
 #include "scene/random.h"
+#include "stages/errors.h"
 
 namespace coppice {
 
@@ -47,7 +48,7 @@ std::vector<LeakCount> count_leaks(CheckedDevice& device, const HardCase& hard_c
   const std::vector<Triangle> triangles =
       case_triangles(hard_case, hard_case.default_triangle_count, stability.seed, static_cast<float>(scale));
   const Bvh bvh = build_ploc(triangles, {});
-  RayTracing tracing(device, bvh.nodes, triangles,
+  RayTracing tracing(device.device, bvh.nodes, triangles,
                      static_cast<std::uint32_t>(std::min(rays, most_rays_at_once)));
   std::vector<LeakCount> counts;
   for (const IntersectionVariant& variant : intersection_variants()) {
@@ -58,7 +59,7 @@ std::vector<LeakCount> count_leaks(CheckedDevice& device, const HardCase& hard_c
     const std::vector<Ray> batch = rays_from_inside(bvh.nodes[0], triangles, count, stability.seed + first);
     for (LeakCount& leak : counts) {
       const TracedRays traced = tracing.on_device(batch, tree_options(device, options, *leak.variant));
-      if (!traced.error.empty()) throw DeviceError(traced.error);
+      if (traced.error_word) throw DeviceError(describe_error_word(traced.error_word));
       leak.rays += count;
       leak.leaks += count - traced.hit_count;
       leak.seconds += traced.ms / 1000;
@@ -92,7 +93,7 @@ double cost_of_nan_rays(CheckedDevice& device, const Options& options) {
   constexpr std::uint32_t ray_count = 1u << 18;
   const std::vector<Triangle> triangles = case_triangles(*find_hard_case("sphere"), 20000, 1);
   const Bvh bvh = build_ploc(triangles, {});
-  RayTracing tracing(device, bvh.nodes, triangles, ray_count);
+  RayTracing tracing(device.device, bvh.nodes, triangles, ray_count);
   const std::vector<Ray> sound = hard_rays(RayKind::RANDOM, triangles, bvh.nodes, ray_count, 1);
   std::vector<Ray> unsound = sound;
   for (std::size_t i = 0; i < unsound.size(); ++i) {

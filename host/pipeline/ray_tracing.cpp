@@ -1,6 +1,6 @@
-#include "apps/ray_tracing.h"
+#include "pipeline/ray_tracing.h"
 
-#include "stages/errors.h"
+#include "pipeline/traffic.h"
 
 namespace coppice {
 
@@ -23,11 +23,11 @@ RayTracing::Slots RayTracing::plan(Layout& layout, std::size_t nodes, std::size_
   return slots;
 }
 
-RayTracing::RayTracing(CheckedDevice& device, std::span<const Node> nodes,
-                       std::span<const Triangle> triangles, std::uint32_t most_rays)
-    : layout_(device.device.properties().max_block_bytes),
+RayTracing::RayTracing(Device& device, std::span<const Node> nodes, std::span<const Triangle> triangles,
+                       std::uint32_t most_rays)
+    : layout_(device.properties().max_block_bytes),
       slots_(plan(layout_, nodes.size(), triangles.size(), most_rays)),
-      gpu_(device.device, layout_),
+      gpu_(device, layout_),
       cpu_(layout_) {
   state_.active_count = static_cast<uint>((nodes.size() + 1) / 2);
   gpu_.upload(slots_.tree.nodes, nodes);
@@ -50,41 +50,40 @@ template <class Executor>
 TracedRays RayTracing::result(Executor& executor, std::size_t ray_count) const {
   TracedRays traced;
   traced.hits = executor.read(Slot<Hit>{slots_.rays.hits.place, ray_count});
-  const TraceCounters counters = executor.read(slots_.rays.counters)[0];
-  traced.hit_count = std::uint64_t{counters.hits.y} << 32 | counters.hits.x;
-  traced.error = describe_error_word(executor.read(slots_.tree.state)[0].error_word);
+  traced.hit_count = counts_of_trace(executor.read(slots_.rays.counters)[0]).hits;
+  traced.error_word = executor.read(slots_.tree.state)[0].error_word;
   return traced;
+}
+
+Chain RayTracing::closest_hits(Chain chain, std::size_t ray_count, const TraceOptions& options) const {
+  chain.clear(slots_.rays.counters);
+  append_closest_hits(chain, slots_.tree, slots_.rays, static_cast<std::uint32_t>(ray_count), options);
+  return chain;
 }
 
 TracedRays RayTracing::on_device(std::span<const Ray> rays, const TraceOptions& options) {
   upload_rays(gpu_, rays);
-  Chain chain = gpu_.chain();
-  chain.clear(slots_.rays.counters);
-  append_closest_hits(chain, slots_.tree, slots_.rays, static_cast<std::uint32_t>(rays.size()), options);
-  const Recorder::Times times = gpu_.record(chain.steps()).submit_and_wait(limit_seconds);
+  const Chain chain = closest_hits(gpu_.chain(), rays.size(), options);
+  const double ms = gpu_.record(chain.steps()).submit_and_wait(limit_seconds).total_ms;
   TracedRays traced = result(gpu_, rays.size());
-  traced.ms = times.total_ms;
+  traced.ms = ms;
   return traced;
 }
 
 TracedRays RayTracing::by_twins(std::span<const Ray> rays, const TraceOptions& options) {
   upload_rays(cpu_, rays);
-  Chain chain = cpu_.chain();
-  chain.clear(slots_.rays.counters);
-  append_closest_hits(chain, slots_.tree, slots_.rays, static_cast<std::uint32_t>(rays.size()), options);
-  cpu_.run(chain.steps());
+  cpu_.run(closest_hits(cpu_.chain(), rays.size(), options).steps());
   return result(cpu_, rays.size());
 }
 
 std::vector<Ray> RayTracing::bounce(std::span<const Ray> rays, const TraceOptions& options,
                                     std::uint32_t seed) {
   upload_rays(gpu_, rays);
-  Chain chain = gpu_.chain();
-  const auto ray_count = static_cast<std::uint32_t>(rays.size());
-  append_closest_hits(chain, slots_.tree, slots_.rays, ray_count, options);
-  append_bounce(chain, slots_.tree, slots_.rays, slots_.bounced, ray_count, seed);
+  Chain chain = closest_hits(gpu_.chain(), rays.size(), options);
+  append_bounce(chain, slots_.tree, slots_.rays, slots_.bounced, static_cast<std::uint32_t>(rays.size()),
+                seed);
   gpu_.record(chain.steps()).submit_and_wait(limit_seconds);
-  return gpu_.read(Slot<Ray>{slots_.bounced.rays.place, ray_count});
+  return gpu_.read(Slot<Ray>{slots_.bounced.rays.place, rays.size()});
 }
 
 }  // namespace coppice

@@ -1,10 +1,9 @@
 #pragma once
 
 #include <span>
-#include <string>
 #include <vector>
 
-#include "apps/checked_device.h"
+#include "pipeline/trace.h"
 #include "stages/cpu_executor.h"
 #include "stages/gpu_executor.h"
 
@@ -13,15 +12,16 @@ namespace coppice {
 struct TracedRays {
   std::vector<Hit> hits;
   std::uint64_t hit_count = 0;
-  std::string error;  // what the error word said; empty: nothing
-  double ms = 0;
+  std::uint32_t error_word = 0;
+  double ms = 0;  // of the device
 };
 
 // Traces given rays through a tree that the host has, on the device and by the twins.
 class RayTracing {
  public:
-  // The tree is uploaded once. Throws DeviceError if it does not fit, LayoutError if a slot is too large.
-  RayTracing(CheckedDevice& device, std::span<const Node> nodes, std::span<const Triangle> triangles,
+  // The tree is uploaded once; `nodes` may be empty for brute force. Throws DeviceError if it does not fit,
+  // LayoutError if a slot is too large.
+  RayTracing(Device& device, std::span<const Node> nodes, std::span<const Triangle> triangles,
              std::uint32_t most_rays);
 
   TracedRays on_device(std::span<const Ray> rays, const TraceOptions& options);
@@ -38,6 +38,7 @@ class RayTracing {
   static Slots plan(Layout& layout, std::size_t nodes, std::size_t triangles, std::uint32_t most_rays);
   template <class Executor>
   void upload_rays(Executor& executor, std::span<const Ray> rays) const;
+  Chain closest_hits(Chain chain, std::size_t ray_count, const TraceOptions& options) const;
   template <class Executor>
   TracedRays result(Executor& executor, std::size_t ray_count) const;
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "pipeline/build.h"
-#include "pipeline/trace.h"
+#include "pipeline/ray_tracing.h"
 #include "support/test_device.h"
 
 namespace coppice {
@@ -19,13 +19,8 @@ struct BuiltTree {
 BuiltTree build_on(Device& device, std::span<const Triangle> triangles, const BuildOptions& options,
                    int runs = 1);
 
-struct Traced {
-  std::vector<Hit> hits;
-  std::uint32_t error_word;
-};
-
 // Traces rays on the test device through a tree; by brute force where `nodes` is empty.
-Traced trace_on_device(std::span<const Node> nodes, std::span<const Triangle> triangles,
-                       std::span<const Ray> rays, const TraceOptions& options = test_trace_options(1, 1));
+TracedRays trace_on_device(std::span<const Node> nodes, std::span<const Triangle> triangles,
+                           std::span<const Ray> rays, const TraceOptions& options = test_trace_options(1, 1));
 
 }  // namespace coppice
