@@ -7,6 +7,7 @@
 
 layout(local_size_x = SORT_GROUP) in;
 layout(push_constant, scalar) uniform Push { SortPassArgs args; };
+layout(constant_id = 3) const uint SORT_HAS_VALUES = 1u;
 
 #include "lib/sort_tile.glsl"
 #define LOOKBACK_GROUP SORT_GROUP
@@ -59,7 +60,7 @@ void scatter(uint tile) {
     digit_rows[counter] = place + 1u;
     for (uint word = 0u; word < args.key_words; ++word)
       args.keys_out.at[place * args.key_words + word] = args.keys_in.at[i * args.key_words + word];
-    args.values_out.at[place] = args.values_in.at[i];
+    if (SORT_HAS_VALUES != 0u) args.values_out.at[place] = args.values_in.at[i];
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include "pipeline/build.h"
 #include "pipeline/copy_limit.h"
+#include "pipeline/scan.h"
 #include "pipeline/trace.h"
 #include "pipeline/traffic.h"
 #include "stages/stages.h"
@@ -92,6 +93,23 @@ TEST(Traffic, OfATraceOfTwoSamples) {
   EXPECT_EQ(bytes["shade"], 2000u * 48 + 500 * 64 + 1000 * 12);
   EXPECT_EQ(bytes["resolve"], 16000u);
   EXPECT_EQ(bytes["bounce_rays"], 1000u * 96 + 250 * 36);
+}
+
+TEST(Traffic, OfAScanWithAndWithoutLookback) {
+  for (const bool lookback : {true, false}) {
+    Layout layout;
+    BuildOptions options;
+    options.lookback = lookback;
+    const ScanPlan plan = plan_scan(layout, 40000, options);  // three tiles of 16,384 words
+    Chain chain({0});
+    append_scan(chain, plan);
+    std::map<std::string, std::uint64_t> bytes;
+    for (const Step& step : chain.steps()) {
+      if (step.stage) bytes[step.stage->name] += modelled_bytes(step, {}).value();
+    }
+    EXPECT_EQ(bytes["scan_tile_sums"], lookback ? 0u : 160000u + 3 * 4);
+    EXPECT_EQ(bytes["prefix_scan"], lookback ? 320000u + 3 * 24 : 320000u + 3 * 4 + 32 + 4);
+  }
 }
 
 TEST(Traffic, EveryStageHasAModel) {

@@ -18,10 +18,6 @@ uvec3 tiles(std::uint32_t count, std::uint32_t tile, std::uint32_t rows = 1) {
   return {count / tile + (count % tile != 0), rows, 1};
 }
 
-std::vector<std::uint32_t> lookback_constants(const BuildOptions& options) {
-  return {options.lookback_turns, options.lookback_max_fallbacks, options.lookback_stress};
-}
-
 void append_bounds(Chain& chain, const BuildPlan& plan) {
   chain.run(stages::primitive_bounds,
             {chain.at(plan.triangles), chain.at(plan.boxes), chain.at(plan.state), plan.triangle_count, 0},
@@ -49,13 +45,17 @@ void append_sort_passes(Chain& chain, const BuildPlan& plan) {
             tiles(n, SORT_HISTOGRAM_TILE, key_words));
   chain.run(stages::sort_digit_scan, {chain.at(plan.histogram), passes, 0}, {passes, 1, 1});
   const uvec3 pass_groups = tiles(n, SORT_TILE);
+  const bool has_values = plan.values[0].count > 0;
+  const auto values = [&](int side) { return has_values ? chain.at(plan.values[side]) : Address<uint>{}; };
+  std::vector<std::uint32_t> constants = lookback_constants(plan.options);
+  constants.push_back(has_values);
   for (std::uint32_t pass = 0; pass < passes; ++pass) {
     const int in = pass % 2, out = 1 - in;
     const auto status = chain.at(plan.sort_status, std::uint64_t{pass} * pass_groups.x * SORT_DIGITS);
     const SortPassArgs args{chain.at(plan.keys[in]),
-                            chain.at(plan.values[in]),
+                            values(in),
                             chain.at(plan.keys[out]),
-                            chain.at(plan.values[out]),
+                            values(out),
                             chain.at(plan.histogram, pass * SORT_DIGITS),
                             status,
                             chain.at(plan.sort_tickets, pass),
@@ -68,7 +68,7 @@ void append_sort_passes(Chain& chain, const BuildPlan& plan) {
       chain.run(stages::sort_tile_counts, args, pass_groups);
       chain.run(stages::sort_tile_scan, {status, pass_groups.x, 0}, {1, 1, 1});
     }
-    chain.run(stages::sort_pass, args, pass_groups, lookback_constants(plan.options));
+    chain.run(stages::sort_pass, args, pass_groups, constants);
   }
 }
 
@@ -126,10 +126,14 @@ void append_hploc(Chain& chain, const BuildPlan& plan) {
 
 }  // namespace
 
+std::vector<std::uint32_t> lookback_constants(const BuildOptions& options) {
+  return {options.lookback_turns, options.lookback_max_fallbacks, options.lookback_stress};
+}
+
 std::span<const NamedDeviceBuilder> device_builders() {
-  static constexpr NamedDeviceBuilder builders[] = {{"gpu-ploc", DeviceBuilder::ploc},
-                                                    {"gpu-hploc", DeviceBuilder::hploc},
-                                                    {"gpu-lbvh", DeviceBuilder::lbvh}};
+  static constexpr NamedDeviceBuilder builders[] = {{"gpu-ploc", DeviceBuilder::ploc, "ploc-parallel"},
+                                                    {"gpu-hploc", DeviceBuilder::hploc, "hploc"},
+                                                    {"gpu-lbvh", DeviceBuilder::lbvh, "lbvh"}};
   return builders;
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "interface/ploc.h"
 #include "interface/types.h"
@@ -18,6 +19,7 @@ enum class DeviceBuilder { ploc, hploc, lbvh };
 struct NamedDeviceBuilder {
   std::string_view name;
   DeviceBuilder builder;
+  std::string_view cpu_builder;  // of the same tree, bit for bit
 };
 
 // All of them, the default one first.
@@ -68,6 +70,9 @@ struct BuildPlan : TreeSlots {
 // The most triangles of a build: Vulkan promises 65,535 workgroups a dispatch.
 inline constexpr std::uint32_t max_triangles = 65535u * PLOC_NEAREST_TILE;
 
+// The constants of a kernel with lookback.
+std::vector<std::uint32_t> lookback_constants(const BuildOptions& options);
+
 // Rounds of PLOC that reduce `clusters` clusters to at most `target`, at worst; proved in docs/numerics.md.
 std::uint32_t ploc_rounds_bound(std::uint32_t clusters, std::uint32_t target);
 
@@ -78,11 +83,12 @@ TreeSlots plan_tree(Layout& layout, std::uint32_t triangle_count, std::uint64_t 
 // more than max_triangles.
 BuildPlan plan_build(Layout& layout, std::uint32_t triangle_count, const BuildOptions& options);
 
-// Only the sort's slots of a build of `key_count` pairs, and its state. Throws LayoutError if one does not
-// fit a block.
-BuildPlan plan_sort(Layout& layout, std::uint32_t key_count, const BuildOptions& options);
+// Only the sort's slots of a build of `key_count` pairs, or of keys alone, and its state. Throws LayoutError
+// if one does not fit a block.
+BuildPlan plan_sort(Layout& layout, std::uint32_t key_count, const BuildOptions& options,
+                    bool has_values = true);
 
-// The pairs in keys[0] and values[0], sorted stably by key, in place.
+// The pairs in keys[0] and values[0], or the keys alone, sorted stably by key, in place.
 void append_sort(Chain& chain, const BuildPlan& plan);
 
 // Triangles to tree: bounds, Morton codes, sort, and the builder of the options.

@@ -39,7 +39,7 @@ void add_sort_status(Layout& layout, BuildPlan& plan) {
 
 }  // namespace
 
-BuildPlan plan_sort(Layout& layout, std::uint32_t key_count, const BuildOptions& options) {
+BuildPlan plan_sort(Layout& layout, std::uint32_t key_count, const BuildOptions& options, bool has_values) {
   BuildPlan plan;
   plan.options = options;
   plan.triangle_count = key_count;
@@ -47,7 +47,7 @@ BuildPlan plan_sort(Layout& layout, std::uint32_t key_count, const BuildOptions&
   for (int i = 0; i < 2; ++i) {
     plan.keys[i] =
         layout.add<uint>(i ? "keys_b" : "keys_a", std::uint64_t{key_count} * options.morton_bits / 30);
-    plan.values[i] = layout.add<uint>(i ? "values_b" : "values_a", key_count);
+    plan.values[i] = layout.add<uint>(i ? "values_b" : "values_a", has_values ? key_count : 0);
   }
   add_sort_status(layout, plan);
   return plan;

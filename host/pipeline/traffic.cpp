@@ -23,7 +23,13 @@ constexpr Bytes digit_row = SORT_DIGITS * sizeof(uint);  // a tile's word for ea
 Bytes sort_pass_bytes(const SortPassArgs& args) {
   // Status words are written as aggregate and as prefix, and read by the next tile; or only read.
   const Bytes status = digit_row * tiles(args.count, SORT_TILE) * (args.lookback ? 3 : 1);
-  return Bytes{args.count} * 2 * (4 * args.key_words + 4) + status;
+  return Bytes{args.count} * 2 * (4 * args.key_words + (args.values_in.value ? 4 : 0)) + status;
+}
+
+Bytes prefix_scan_bytes(const PrefixScanArgs& args) {
+  // As for a sort's pass; without lookback a word a tile is read.
+  const Bytes status = tiles(args.quad_count, SCAN_TILE) * 4 * (args.lookback ? 3 * SCAN_SUMS : 1);
+  return Bytes{args.quad_count} * 2 * sizeof(uvec4) + status;
 }
 
 std::optional<Bytes> sort_bytes(const Step& step) {
@@ -125,6 +131,9 @@ RunCounts counts_of_trace(const TraceCounters& counters) {
 std::optional<std::uint64_t> modelled_bytes(const Step& step, const RunCounts& counts) {
   if (!step.stage) return step.clear_bytes;
   if (const auto* a = args_of(step, stages::copy_words)) return Bytes{a->quad_count} * 2 * sizeof(uvec4);
+  if (const auto* a = args_of(step, stages::scan_tile_sums))
+    return Bytes{a->quad_count} * sizeof(uvec4) + tiles(a->quad_count, SCAN_TILE) * 4;
+  if (const auto* a = args_of(step, stages::prefix_scan)) return prefix_scan_bytes(*a);
   if (const auto* a = args_of(step, stages::primitive_bounds))
     return Bytes{a->triangle_count} * (sizeof(Triangle) + sizeof(Aabb));
   if (const auto* a = args_of(step, stages::morton_codes))

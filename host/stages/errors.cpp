@@ -13,6 +13,9 @@ std::string describe_error_word(std::uint32_t error_word) {
        "sort_pass: a tile waited in vain for the sums of the tiles before it (--lookback off does without)"},
       {ERROR_PLOC_LOOKBACK,
        "ploc_merge: a tile waited in vain for the sums of the tiles before it (--lookback off does without)"},
+      {ERROR_SCAN_LOOKBACK,
+       "prefix_scan: a tile waited in vain for the sums of the tiles before it (--lookback off does "
+       "without)"},
       {ERROR_PLOC_ROUNDS, "ploc_finish: the rounds did not end with one cluster within their bound"},
       {ERROR_TREE_TOO_DEEP, "trace_closest: the tree is deeper than the traversal stack"},
       {ERROR_TRACE_STEPS, "trace_closest: a ray needs more steps than this driver's loops may take"},

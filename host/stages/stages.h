@@ -5,6 +5,7 @@
 #include "interface/hploc.h"
 #include "interface/morton.h"
 #include "interface/ploc.h"
+#include "interface/scan.h"
 #include "interface/sort.h"
 #include "interface/trace.h"
 #include "stages/stage.h"
@@ -31,7 +32,9 @@
   STAGE(bounce_rays, BounceRaysArgs)            \
   STAGE(shade, ShadeArgs)                       \
   STAGE(resolve, ResolveArgs)                   \
-  STAGE(copy_words, CopyWordsArgs)
+  STAGE(copy_words, CopyWordsArgs)              \
+  STAGE(scan_tile_sums, ScanTileSumsArgs)       \
+  STAGE(prefix_scan, PrefixScanArgs)
 
 namespace coppice {
 

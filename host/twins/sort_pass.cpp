@@ -15,7 +15,7 @@ void sort_pass(const SortPassArgs& args) {
     for (uint word = 0; word < args.key_words; ++word) {
       args.keys_out[std::size_t{place} * args.key_words + word] = args.keys_in[source + word];
     }
-    args.values_out[place] = args.values_in[i];
+    if (args.values_in.value) args.values_out[place] = args.values_in[i];
 
     const bool ends_tile = (i + 1) % SORT_TILE == 0 || i + 1 == args.count;
     if (args.lookback && ends_tile) {

@@ -34,7 +34,7 @@ struct SortDigitScanArgs {
 
 // Shared by the passes and, without lookback, by the kernel that counts a tile's digits.
 struct SortPassArgs {
-  UintBuffer keys_in, values_in;
+  UintBuffer keys_in, values_in;  // keys alone have no values: null
   UintBuffer keys_out, values_out;
   UintBuffer digit_offsets;        // SORT_DIGITS, of this pass
   CoherentUintBuffer tile_status;  // tiles * SORT_DIGITS: lookback words; without lookback, digit counts,

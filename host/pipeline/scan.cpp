@@ -1,0 +1,55 @@
+#include "pipeline/scan.h"
+
+#include <stdexcept>
+#include <string>
+
+#include "stages/stages.h"
+
+namespace coppice {
+
+namespace {
+
+constexpr std::uint64_t first_tile_word =
+    4;  // of the status, behind the ticket: tiles' sums are scanned as quads
+static_assert(SCAN_MAX_TILES <= SCAN_TILE * 4 && SCAN_MAX_TILES <= 65535);
+
+std::uint64_t divide_up(std::uint64_t a, std::uint64_t b) { return (a + b - 1) / b; }
+
+}  // namespace
+
+ScanPlan plan_scan(Layout& layout, std::uint64_t word_count, const BuildOptions& options) {
+  if (word_count > max_scan_words) {
+    throw std::invalid_argument(std::to_string(word_count) + " words are more than a scan takes, " +
+                                std::to_string(max_scan_words));
+  }
+  const std::uint64_t quads = divide_up(word_count, 4);
+  ScanPlan plan;
+  plan.options = options;
+  plan.source = layout.add<uvec4>("scan_source", quads);
+  plan.target = layout.add<uvec4>("scan_target", quads);
+  plan.status = layout.add<uint>("scan_status",
+                                 first_tile_word + divide_up(divide_up(quads, SCAN_TILE) * SCAN_SUMS, 4) * 4);
+  plan.state = layout.add<BuildState>("state", 1);
+  return plan;
+}
+
+void append_scan(Chain& chain, const ScanPlan& plan) {
+  const auto quads = static_cast<std::uint32_t>(plan.source.count);
+  const auto tiles = static_cast<std::uint32_t>(divide_up(quads, SCAN_TILE));
+  const auto source = chain.at(plan.source), target = chain.at(plan.target);
+  const auto ticket = chain.at(plan.status), status = chain.at(plan.status, first_tile_word);
+  const auto state = chain.at(plan.state);
+  chain.clear(plan.status);
+  if (!plan.options.lookback) {
+    const std::uint32_t sum_quads = divide_up(tiles, 4);
+    const Address<uvec4> sums{status.value};
+    chain.run(stages::scan_tile_sums, {source, status, quads, 0}, {tiles, 1, 1});
+    // One tile, so in place; before it is nothing, as the unused ticket says.
+    chain.run(stages::prefix_scan, {sums, sums, ticket, ticket, state, sum_quads, 0},
+              {tiles > 0 ? 1u : 0u, 1, 1});
+  }
+  chain.run(stages::prefix_scan, {source, target, status, ticket, state, quads, plan.options.lookback},
+            {tiles, 1, 1}, lookback_constants(plan.options));
+}
+
+}  // namespace coppice

@@ -1,0 +1,28 @@
+#pragma once
+
+#include "interface/scan.h"
+#include "pipeline/build.h"
+
+namespace coppice {
+
+// Where a prefix scan of its own keeps what. The builders' scans are part of their stages.
+struct ScanPlan {
+  BuildOptions options;  // how it looks back
+  Slot<uvec4> source;    // in: words, the last quad filled up with zeroes
+  Slot<uvec4> target;    // out: for each word the sum of those before it, modulo 2^32
+  Slot<uint> status;     // the ticket and the tiles' words
+  Slot<BuildState> state;
+
+  // The places of the words themselves.
+  static Slot<uint> words_of(const Slot<uvec4>& quads) { return {quads.place, quads.count * 4}; }
+};
+
+// The most words of a scan.
+inline constexpr std::uint64_t max_scan_words = std::uint64_t{SCAN_MAX_TILES} * SCAN_TILE * 4;
+
+// Throws LayoutError if a slot does not fit a block, std::invalid_argument for more than max_scan_words.
+ScanPlan plan_scan(Layout& layout, std::uint64_t word_count, const BuildOptions& options);
+
+void append_scan(Chain& chain, const ScanPlan& plan);
+
+}  // namespace coppice

@@ -1,0 +1,39 @@
+// Exclusive prefix sums of a list of words, modulo 2^32.
+#ifndef COPPICE_INTERFACE_SCAN_H
+#define COPPICE_INTERFACE_SCAN_H
+#include "copy.h"
+INTERFACE_BEGIN
+
+// One invocation sums, and then scans, a run of consecutive quads of words serially: the fastest on CPU
+// devices.
+const uint SCAN_GROUP = 16;
+const uint SCAN_RUN = 256;
+const uint SCAN_TILE = SCAN_GROUP * SCAN_RUN;  // quads
+
+// A lookback word holds 30 bits, so tiles hand over two sums: of the lower and of the upper halves of the
+// tiles' sums.
+const uint SCAN_SUMS = 2;
+const uint SCAN_HALF_BITS = 16;
+// So that those sums fit, and the tiles' sums are one tile themselves.
+const uint SCAN_MAX_TILES = 1 << (30 - SCAN_HALF_BITS);
+
+struct PrefixScanArgs {
+  WordQuadBuffer source;  // quad_count
+  WordQuadBuffer target;  // quad_count; without lookback it may be the source
+  CoherentUintBuffer
+      tile_status;            // lookback: tiles * SCAN_SUMS words of it; else the exclusive sums of the tiles
+  CoherentUintBuffer ticket;  // one word
+  BuildStateBuffer state;     // error word
+  uint quad_count;
+  uint lookback;  // 1: tile prefixes by lookback; 0: from scan_tile_sums and a scan of them
+};
+
+struct ScanTileSumsArgs {
+  WordQuadBuffer source;  // quad_count
+  UintBuffer tile_sums;   // tiles
+  uint quad_count;
+  uint padding;
+};
+
+INTERFACE_END
+#endif
