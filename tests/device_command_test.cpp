@@ -132,9 +132,15 @@ TEST_F(Command, BenchChecksAndTimes) {
     const char *arguments, *last_name;
     std::size_t rows;
     int last_size;
-  } cases[] = {{"sort --most 5000", "sort_pairs_64", 2 * 4 * 3, 5000},
-               {"build --most 12000", "gpu-ploc", 2, 12000},
-               {"trace terrain:500 --size 32x24", "trace_diffuse", 2, 0}};
+    const char* column;  // besides those that all rows have
+  } cases[] = {{"sort --most 5000", "sort_keys_64", 4 * 4 * 3, 5000, nullptr},
+               {"sort --most 5000 --only sort_keys_32,few-bits", "sort_keys_64", (4 + 3) * 3, 5000, nullptr},
+               {"scan --most 40000", "scan", 4, 40000, "times_std"},
+               {"ploc --most 12000", "ploc", 2, 12000, "ns_per_cluster"},
+               {"build --most 12000", "gpu-lbvh", 3 * 2, 12000, "hploc_build_ms"},
+               {"build --most 10000 --builder gpu-ploc,gpu-hploc", "gpu-hploc", 2, 10000,
+                "ploc_merge_percent_of_copy"},
+               {"trace terrain:500 --size 32x24 --builder gpu-lbvh", "trace_diffuse", 2, 0, "frame_ms"}};
   for (const auto& c : cases) {
     const Outcome outcome =
         run(std::string("bench ") + c.arguments + " --runs 2 --validate --csv rows.csv --json -");
@@ -147,14 +153,53 @@ TEST_F(Command, BenchChecksAndTimes) {
     }
     for (const auto& row : rows) {
       EXPECT_EQ(row["runs"], 2);
-      EXPECT_GE(row["warm_up_runs"], 10);
+      EXPECT_GE(row["warm_up_runs"], 2);
       EXPECT_LE(row["ms_min"], row["ms"]);
       EXPECT_LE(row["ms"], row["ms_max"]);
     }
-    EXPECT_EQ(std::ranges::count(read("rows.csv"), '\n'), static_cast<int>(c.rows) + 1);
+    const std::string csv = read("rows.csv");
+    EXPECT_EQ(std::ranges::count(csv, '\n'), static_cast<int>(c.rows) + 1);
+    const std::string header = csv.substr(0, csv.find('\n'));
+    EXPECT_TRUE(header.ends_with(",device,driver,date")) << header;
+    if (c.column) {
+      EXPECT_NE(header.find("," + std::string(c.column) + ","), std::string::npos) << header;
+    }
   }
-  expect_refused("bench nonsense", 2, "nonsense");
+}
+
+// Every line of a table has the columns of its header, whichever rows have a value there.
+TEST_F(Command, BenchLeavesColumnsEmptyThatARowLacks) {
+  ASSERT_EQ(run("bench build --most 10000 --runs 1 --builder gpu-ploc,gpu-lbvh --csv rows.csv").status, 0);
+  std::istringstream lines(read("rows.csv"));
+  std::vector<std::ptrdiff_t> commas;
+  for (std::string line; std::getline(lines, line);) {
+    for (bool quoted = false; char& c : line) {
+      quoted ^= c == '"';
+      if (quoted && c == ',') c = ' ';
+    }
+    commas.push_back(std::ranges::count(line, ','));
+  }
+  ASSERT_EQ(commas.size(), 3u);
+  EXPECT_EQ(commas[1], commas[0]);
+  EXPECT_EQ(commas[2], commas[0]);
+}
+
+TEST_F(Command, BenchRefusesWhatItCannotMeasure) {
+  const struct {
+    const char *arguments, *part;
+  } cases[] = {{"bench", "WHAT"},
+               {"bench nonsense", "nonsense"},
+               {"bench scan --most 3", "--most"},
+               {"bench scan --most 67108865", "--most"},
+               {"bench sort --runs 0", "--runs"},
+               {"bench build --builder nonsense", "nonsense"},
+               {"bench build --builder gpu-ploc,sah", "sah"},
+               {"bench build --nonsense", "nonsense"},
+               {"bench trace --size 0x0", "--size"}};
+  for (const auto& c : cases) expect_refused(c.arguments, 2, c.part);
   expect_refused("bench sort --csv nowhere/rows.csv", 1, "nowhere/rows.csv");
+  expect_refused("bench scan --only sort", 1, "--only");
+  expect_refused("bench trace nonsense", 1, "nonsense");
 }
 
 TEST_F(Command, ChoosesTheMortonBitsThatTheSceneCallsFor) {

@@ -1,9 +1,13 @@
+#include <algorithm>
+#include <cstdio>
+
 #include "analysis/tree_hash.h"
 #include "apps/bench.h"
 #include "apps/frame.h"
 #include "apps/measure_build.h"
 #include "builders/registry.h"
 #include "scene/scene_source.h"
+#include "stages/stages.h"
 
 namespace coppice {
 
@@ -11,49 +15,135 @@ namespace {
 
 constexpr double limit_seconds = 120;
 
+// A build of scattered triangles on the device, done once and found right.
+class CheckedBuild {
+ public:
+  CheckedBuild(CheckedDevice& device, Options options, const NamedDeviceBuilder& builder, std::uint32_t count)
+      : arrays_(scene_arrays(open_scene("scatter:" + std::to_string(count)))),
+        layout_(device.device.properties().max_block_bytes),
+        plan_(plan(device, options, builder)),
+        executor_(device.device, layout_) {
+    executor_.upload(plan_.triangles, std::span<const Triangle>(arrays_.triangles));
+    Chain chain = executor_.chain();
+    append_build(chain, plan_);
+    steps_ = chain.steps();
+    executor_.record(steps_).submit_and_wait(limit_seconds);
+    check_state(executor_, plan_);
+    const Bvh expected = find_cpu_builder(builder.cpu_builder)
+                             .build(arrays_.triangles, {options.radius, plan_.options.morton_bits});
+    if (tree_hash(read_tree(executor_, plan_)) != tree_hash(expected.nodes))
+      throw DeviceError(std::string(builder.name) + " of " + std::to_string(count) +
+                        " triangles: not the tree of " + std::string(builder.cpu_builder));
+    arrays_ = {};
+  }
+
+  const std::vector<Step>& steps() const { return steps_; }
+  GpuExecutor& executor() { return executor_; }
+  RunCounts counts() const { return counts_of_build(executor_, plan_); }
+  std::uint64_t device_bytes() const {
+    std::uint64_t bytes = 0;
+    for (const std::uint64_t block : layout_.block_bytes()) bytes += block;
+    return bytes;
+  }
+  // What it holds on the device beside triangles and nodes.
+  std::uint64_t scratch_bytes() const {
+    return device_bytes() - plan_.triangles.bytes() - plan_.nodes.bytes();
+  }
+
+ private:
+  BuildPlan plan(CheckedDevice& device, Options& options, const NamedDeviceBuilder& builder) {
+    options.builder = builder.name;
+    return plan_build(layout_, static_cast<std::uint32_t>(arrays_.triangles.size()),
+                      device.build_options(options, morton_bits_for(options, arrays_.triangles)));
+  }
+
+  SceneArrays arrays_;
+  Layout layout_;
+  BuildPlan plan_;
+  GpuExecutor executor_;
+  std::vector<Step> steps_;
+};
+
+BenchRow bench_builder(CheckedDevice& device, const Options& options, const NamedDeviceBuilder& builder,
+                       std::uint32_t count) {
+  CheckedBuild build(device, options, builder, count);
+  Recorder recorder = build.executor().record(build.steps());
+  const auto run = [&] { return recorder.submit_and_wait(limit_seconds).total_ms; };
+  BenchRow row = bench_row(std::string(builder.name), "scatter", count,
+                           measure_steady(steady_options(options, run()), run));
+  const KernelSplit split = split_time(build.executor(), build.steps(), limit_seconds);
+  const RunCounts counts = build.counts();
+  row.kernels = kernel_table(split, counts, find_copy_limit(device.device, largest_dispatch(split, counts)),
+                             row.ms.median);
+  const double scratch = static_cast<double>(build.scratch_bytes()) / count;
+  row.figures = {{"scratch_bytes_per_triangle", scratch},
+                 {"device_bytes_per_triangle", static_cast<double>(build.device_bytes()) / count},
+                 {"timed_ms", row.kernels.sum().ms}};
+  char note[80];
+  std::snprintf(note, sizeof note, "%.1f bytes of scratch a triangle", scratch);
+  row.note = note;
+  return row;
+}
+
+// The chain with a mark before the first round, so that the rounds have a time of their own.
+std::vector<Step> with_mark(std::vector<Step> steps) {
+  const auto leaves =
+      std::ranges::find(steps, static_cast<const StageDeclaration*>(&stages::ploc_leaves), &Step::stage);
+  steps.insert(leaves, Step{});
+  return steps;
+}
+
+BenchRow bench_rounds(CheckedDevice& device, const Options& options, std::uint32_t count) {
+  CheckedBuild build(device, options, *find_device_builder("gpu-ploc"), count);
+  const std::vector<Step> needed = split_time(build.executor(), build.steps(), limit_seconds).steps;
+  Recorder whole = build.executor().record(with_mark(build.steps()));
+  Recorder lean = build.executor().record(with_mark(needed));
+  std::vector<double> whole_ms, lean_ms;  // in turns, so that both meet the same machine
+  const auto run = [&] {
+    const Recorder::Times times = whole.submit_and_wait(limit_seconds);
+    whole_ms.push_back(times.total_ms);
+    lean_ms.push_back(lean.submit_and_wait(limit_seconds).total_ms);
+    return times.total_ms - times.marks_ms.at(0);
+  };
+  const SteadyTime time = measure_steady(steady_options(options, run()), run);
+  BenchRow row = bench_row("ploc", "scatter", count, time);
+  for (std::vector<double>* const all : {&whole_ms, &lean_ms})
+    all->erase(all->begin(), all->end() - row.runs);
+  const double build_ms = spread_of(whole_ms).median, needed_ms = spread_of(lean_ms).median;
+
+  const RunCounts counts = build.counts();
+  double clusters = 0;
+  for (const PlocRound& round : counts.rounds) clusters += round.cluster_count;
+  const double ns = row.ms.median * 1e6 / clusters, share = 100 * (build_ms - needed_ms) / build_ms;
+  row.figures = {{"rounds", static_cast<double>(counts.rounds.size() - 1)},
+                 {"clusters_in", clusters},
+                 {"ns_per_cluster", ns},
+                 {"empty_dispatches", static_cast<double>(build.steps().size() - needed.size())},
+                 {"build_ms", build_ms},
+                 {"build_without_empty_ms", needed_ms},
+                 {"empty_percent", share}};
+  char note[120];
+  std::snprintf(note, sizeof note, "%zu rounds, %.2f ns a cluster, empty dispatches %.1f %% of the build",
+                counts.rounds.size() - 1, ns, share);
+  row.note = note;
+  return row;
+}
+
 }  // namespace
 
-BenchRow bench_row(std::string name, std::string input, std::uint64_t size, const SteadyTime& time) {
-  return {std::move(name),
-          std::move(input),
-          size,
-          spread_of(time.runs_ms),
-          static_cast<std::uint32_t>(time.runs_ms.size()),
-          time.warm_up_runs,
-          time.stable};
-}
-
-std::vector<std::uint32_t> bench_sizes(std::uint32_t first, std::uint32_t most) {
-  std::vector<std::uint32_t> sizes;
-  for (std::uint64_t size = first; size < most; size *= 4) sizes.push_back(static_cast<std::uint32_t>(size));
-  sizes.push_back(most);
-  return sizes;
-}
-
 void bench_build(CheckedDevice& device, const Options& options, const AddRow& add) {
-  for (const std::uint32_t count : bench_sizes(10000, options.most)) {
-    const SceneArrays arrays = scene_arrays(open_scene("scatter:" + std::to_string(count)));
-    const std::uint32_t bits = morton_bits_for(options, arrays.triangles);
-    Layout layout(device.device.properties().max_block_bytes);
-    const BuildPlan plan = plan_build(layout, count, device.build_options(options, bits));
-    GpuExecutor executor(device.device, layout);
-    executor.upload(plan.triangles, std::span<const Triangle>(arrays.triangles));
-    Chain chain = executor.chain();
-    append_build(chain, plan);
-    Recorder recorder = executor.record(chain.steps());
-    recorder.submit_and_wait(limit_seconds);
-    check_state(executor, plan);
-    const Bvh expected = find_cpu_builder("ploc").build(arrays.triangles, {options.radius, bits});
-    if (tree_hash(read_tree(executor, plan)) != tree_hash(expected.nodes))
-      throw DeviceError("build of " + std::to_string(count) + " triangles: not the tree of ploc");
-    BenchRow row = bench_row("gpu-ploc", "scatter", count, measure_steady({.runs = options.runs}, [&] {
-                               return recorder.submit_and_wait(limit_seconds).total_ms;
-                             }));
-    std::uint64_t bytes = 0;
-    for (const std::uint64_t block : layout.block_bytes()) bytes += block;
-    row.scratch_bytes = static_cast<double>(bytes - plan.triangles.bytes() - plan.nodes.bytes()) / count;
-    add(row);
+  for (const NamedDeviceBuilder& builder : device_builders()) {
+    const std::string name(builder.name);
+    const bool chosen = options.builders.empty() || std::ranges::count(options.builders, name);
+    if (!chosen || !is_wanted(options, name, "scatter")) continue;
+    for (const std::uint32_t count : bench_sizes(10000, options.most))
+      add(bench_builder(device, options, builder, count));
   }
+}
+
+void bench_ploc(CheckedDevice& device, const Options& options, const AddRow& add) {
+  if (!is_wanted(options, "ploc", "scatter")) return;
+  for (const std::uint32_t count : bench_sizes(5000, options.most)) add(bench_rounds(device, options, count));
 }
 
 }  // namespace coppice

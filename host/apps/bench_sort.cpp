@@ -31,35 +31,62 @@ std::uint64_t key_at(const std::vector<uint>& keys, std::size_t i, std::uint32_t
   return key_words == 1 ? keys[i] : std::uint64_t{keys[2 * i + 1]} << 32 | keys[2 * i];
 }
 
-// What std::stable_sort makes of the same pairs.
-void check_sorted(const GpuExecutor& executor, const BuildPlan& plan, const std::vector<uint>& keys,
-                  std::uint32_t key_words, const std::string& what) {
-  std::vector<uint> order(plan.triangle_count);
-  std::iota(order.begin(), order.end(), 0u);
-  std::ranges::stable_sort(order, {}, [&](uint i) { return key_at(keys, i, key_words); });
-  const std::vector<uint> sorted = executor.read(plan.keys[0]);
-  bool right = executor.read(plan.values[0]) == order;
-  for (std::size_t i = 0; i < order.size() && right; ++i)
-    right = key_at(sorted, i, key_words) == key_at(keys, order[i], key_words);
-  if (!right) throw DeviceError("sort of " + what + ": not the order of std::stable_sort");
+// Keys that ascend, each with the value that it came with, equal ones in the order in which they came: there
+// is only one such order. Without values: the keys that std::sort gives.
+bool is_sorted_stably(const GpuExecutor& executor, const BuildPlan& plan, const std::vector<uint>& keys,
+                      std::uint32_t key_words) {
+  const std::vector<uint> sorted = executor.read(plan.keys[0]), values = executor.read(plan.values[0]);
+  const std::size_t count = plan.triangle_count;
+  if (values.empty()) {
+    std::vector<std::uint64_t> expected(count);
+    for (std::size_t i = 0; i < count; ++i) expected[i] = key_at(keys, i, key_words);
+    std::ranges::sort(expected);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (key_at(sorted, i, key_words) != expected[i]) return false;
+    }
+    return true;
+  }
+  std::vector<bool> seen(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const uint value = values[i];
+    if (value >= count || seen[value]) return false;
+    seen[value] = true;
+    const std::uint64_t key = key_at(sorted, i, key_words);
+    if (key != key_at(keys, value, key_words)) return false;
+    if (i == 0) continue;
+    const std::uint64_t before = key_at(sorted, i - 1, key_words);
+    if (before > key || (before == key && values[i - 1] > value)) return false;
+  }
+  return true;
 }
 
 Slot<uvec4> quads_of(const Slot<uint>& slot) { return {slot.place, slot.bytes() / sizeof(uvec4)}; }
 
-BenchRow bench_pairs(CheckedDevice& device, const Options& options, std::uint32_t count,
-                     std::uint32_t key_words, const std::string& preset) {
+struct SortInput {
+  const char* preset;
+  std::uint32_t key_words;
+  bool has_values;
+
+  std::string name() const {
+    return std::string(has_values ? "sort_pairs_" : "sort_keys_") + (key_words == 1 ? "32" : "64");
+  }
+};
+
+BenchRow bench_keys(CheckedDevice& device, const Options& options, const SortInput& input,
+                    std::uint32_t count) {
   Layout layout(device.device.properties().max_block_bytes);
-  const BuildPlan plan = plan_sort(layout, count, device.build_options(options, 30 * key_words));
+  const BuildPlan plan =
+      plan_sort(layout, count, device.build_options(options, 30 * input.key_words), input.has_values);
   const auto given_keys = layout.add<uint>("given_keys", plan.keys[0].count);
-  const auto given_values = layout.add<uint>("given_values", count);
+  const auto given_values = layout.add<uint>("given_values", plan.values[0].count);
   GpuExecutor executor(device.device, layout);
-  const std::vector<uint> keys = keys_of(preset, count, key_words);
-  std::vector<uint> values(count);
+  const std::vector<uint> keys = keys_of(input.preset, count, input.key_words);
+  std::vector<uint> values(given_values.count);
   std::iota(values.begin(), values.end(), 0u);
   executor.upload(given_keys, std::span<const uint>(keys));
   executor.upload(given_values, std::span<const uint>(values));
 
-  Chain chain = executor.chain();  // the sort ends where it began, so each run fetches its pairs anew
+  Chain chain = executor.chain();  // the sort ends where it began, so each run fetches its keys anew
   append_copy(chain, {quads_of(given_keys), quads_of(plan.keys[0])}, 2 * given_keys.bytes());
   append_copy(chain, {quads_of(given_values), quads_of(plan.values[0])}, 2 * given_values.bytes());
   chain.mark();
@@ -67,22 +94,27 @@ BenchRow bench_pairs(CheckedDevice& device, const Options& options, std::uint32_
   Recorder recorder = executor.record(chain.steps());
   recorder.submit_and_wait(limit_seconds);
   check_state(executor, plan);
-  const std::string name = key_words == 1 ? "sort_pairs_32" : "sort_pairs_64";
-  check_sorted(executor, plan, keys, key_words, std::to_string(count) + " pairs, " + preset);
-  const SteadyTime time = measure_steady({.runs = options.runs}, [&] {
+  if (!is_sorted_stably(executor, plan, keys, input.key_words))
+    throw DeviceError(input.name() + " of " + std::to_string(count) + " keys, " + input.preset +
+                      ": wrong order");
+  const auto run = [&] {
     const Recorder::Times times = recorder.submit_and_wait(limit_seconds);
     return times.total_ms - times.marks_ms.at(0);
-  });
-  return bench_row(name, preset, count, time);
+  };
+  return bench_row(input.name(), input.preset, count, measure_steady(steady_options(options, run()), run));
 }
 
 }  // namespace
 
 void bench_sort(CheckedDevice& device, const Options& options, const AddRow& add) {
-  for (const std::uint32_t key_words : {1u, 2u}) {
-    for (const char* preset : {"random", "few-bits", "all-equal", "sorted"}) {
-      for (const std::uint32_t count : bench_sizes(1024, std::max(options.most / 4 * 4, 4u)))
-        add(bench_pairs(device, options, count, key_words, preset));
+  for (const bool has_values : {true, false}) {
+    for (const std::uint32_t key_words : {1u, 2u}) {
+      for (const char* preset : {"random", "few-bits", "all-equal", "sorted"}) {
+        const SortInput input{preset, key_words, has_values};
+        if (!is_wanted(options, input.name(), preset)) continue;
+        for (const std::uint32_t count : bench_sizes(1024, std::max(options.most / 4 * 4, 4u)))
+          add(bench_keys(device, options, input, count));
+      }
     }
   }
 }

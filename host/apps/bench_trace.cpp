@@ -1,9 +1,11 @@
 #include <algorithm>
+#include <cstdio>
 
 #include "analysis/compare.h"
 #include "apps/bench.h"
 #include "apps/frame.h"
 #include "apps/measure_build.h"
+#include "apps/render_frame.h"
 #include "builders/registry.h"
 #include "pipeline/ray_tracing.h"
 #include "scene/scene_source.h"
@@ -39,12 +41,22 @@ void check_hits(RayTracing& tracing, std::span<const Ray> rays, const TraceOptio
                       " hits are not the twin's");
 }
 
-}  // namespace
+// The whole chain of a picture of the same rays: camera rays, closest hits, shading, sRGB.
+void add_frame(CheckedDevice& device, Options options, const Scene& scene, BenchRow& row) {
+  options.frames = options.runs;
+  const RenderReport frame = render_on_device(device, scene, options);
+  if (frame.rays != row.size) throw DeviceError("the picture has other rays than the measurement");
+  const double mrays_per_s = static_cast<double>(frame.rays) / frame.trace_ms / 1000;
+  row.figures = {{"frame_ms", frame.trace_ms}, {"frame_millions_per_s", mrays_per_s}};
+  char note[80];
+  std::snprintf(note, sizeof note, ", the whole picture %.3f ms, %.2f millions/s", frame.trace_ms,
+                mrays_per_s);
+  row.note += note;
+}
 
-void bench_trace(CheckedDevice& device, const Options& options, const AddRow& add) {
-  const Scene scene = open_scene(options.scene);
-  const SceneArrays arrays = scene_arrays(scene);
-  const Bvh bvh = find_cpu_builder("ploc-parallel")
+void bench_tree(CheckedDevice& device, const Options& options, const Scene& scene, const SceneArrays& arrays,
+                const AddRow& add) {
+  const Bvh bvh = find_cpu_builder(find_device_builder(options.builder)->cpu_builder)
                       .build(arrays.triangles, {options.radius, morton_bits_for(options, arrays.triangles)});
   const TraceOptions trace = device.trace_options(options);
   const std::vector<Ray> primary =
@@ -54,14 +66,32 @@ void bench_trace(CheckedDevice& device, const Options& options, const AddRow& ad
   std::erase_if(bounced,
                 [](const Ray& ray) { return ray.direction == vec3(0); });  // of rays that hit nothing
   for (const std::vector<Ray>* const rays : {&primary, static_cast<const std::vector<Ray>*>(&bounced)}) {
-    const char* const name = rays == &primary ? "trace_primary" : "trace_diffuse";
-    if (rays->empty()) continue;
+    const std::string name = rays == &primary ? "trace_primary" : "trace_diffuse";
+    if (rays->empty() || !is_wanted(options, name, scene.name)) continue;
     check_hits(tracing, *rays, trace, device.device.properties().type == DeviceType::cpu);
-    add(bench_row(name, scene.name, rays->size(), measure_steady({.runs = options.runs}, [&] {
-                    const TracedRays traced = tracing.on_device(*rays, trace);
-                    if (traced.error_word) throw DeviceError(describe_error_word(traced.error_word));
-                    return traced.ms;
-                  })));
+    const auto run = [&] {
+      const TracedRays traced = tracing.on_device(*rays, trace);
+      if (traced.error_word) throw DeviceError(describe_error_word(traced.error_word));
+      return traced.ms;
+    };
+    BenchRow row =
+        bench_row(name, scene.name, rays->size(), measure_steady(steady_options(options, run()), run));
+    row.note = "through the tree of " + options.builder;
+    if (rays == &primary) add_frame(device, options, scene, row);
+    add(row);
+  }
+}
+
+}  // namespace
+
+void bench_trace(CheckedDevice& device, const Options& options, const AddRow& add) {
+  const Scene scene = open_scene(options.scene);
+  const SceneArrays arrays = scene_arrays(scene);
+  Options one = options;
+  for (const std::string& builder :
+       options.builders.empty() ? std::vector{options.builder} : options.builders) {
+    one.builder = builder;
+    bench_tree(device, one, scene, arrays, add);
   }
 }
 

@@ -11,6 +11,7 @@
 #include <limits>
 #include <new>
 
+#include "apps/bench.h"
 #include "apps/options.h"
 #include "builders/registry.h"
 #include "interface/ploc.h"
@@ -164,11 +165,21 @@ void add_stability(CLI::App& command, Options& options) {
 }
 
 void add_bench(CLI::App& command, Options& options) {
-  command.add_option("WHAT", options.bench)->required()->check(CLI::IsMember({"sort", "build", "trace"}));
+  std::vector<std::string> names;
+  for (const coppice::NamedBench& bench : coppice::benches()) names.emplace_back(bench.name);
+  command.add_option("WHAT", options.bench)->required()->check(CLI::IsMember(names));
   command.add_option("SCENE", options.scene, "of the trace")->capture_default_str();
-  command.add_option("--most", options.most, "keys or triangles of the largest size")
+  command.add_option("--most", options.most, "words, keys or triangles of the largest size")
       ->check(CLI::Range(4u, 1u << 26))
       ->capture_default_str();
+  command.add_option("--only", options.only, "only rows of whose name and input this is a part")
+      ->type_name("TEXT[,TEXT...]")
+      ->delimiter(',');
+  command
+      .add_option("--builder", options.builders,
+                  "of build and trace; default: all for build, gpu-ploc for trace")
+      ->delimiter(',')
+      ->check(CLI::IsMember(device_builder_names()));
   command.add_option("--runs", options.runs, "that count, after a warm-up until the median is stable")
       ->check(CLI::Range(1u, 10000u))
       ->capture_default_str();
@@ -217,7 +228,8 @@ int run(int argc, char** argv) {
   CLI::App* const stability =
       app.add_subcommand("stability", "hard cases and hard rays, with every intersection test");
   add_stability(*stability, options);
-  CLI::App* const bench = app.add_subcommand("bench", "times of sort, build or trace, results checked first");
+  CLI::App* const bench =
+      app.add_subcommand("bench", "times of sort, scan, PLOC, build or trace, results checked first");
   add_bench(*bench, options);
   for (CLI::App* const command : {render, lockstep, compare, bench}) add_intersection(*command, options);
   for (CLI::App* const command : {render, compare})

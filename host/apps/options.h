@@ -24,11 +24,12 @@ struct Options {
   bool kernels = false;              // of `render`: once more, to print the time of every kernel
   std::string lookback = "auto";     // auto, on, off
 
-  std::string bench;              // sort, build, trace
+  std::string bench;              // one of benches()
   std::uint32_t most = 1u << 20;  // of `bench`: keys or triangles of the largest size
   std::string csv;                // file; empty: none
+  std::vector<std::string> only;  // parts of names of rows; empty: all
 
-  std::vector<std::string> scenes, builders;  // of `compare`; empty: the default ones, all
+  std::vector<std::string> scenes, builders;  // of `compare` and `bench`; empty: the default ones
   double timeout_seconds = 60;
   std::string markdown, plot;  // files; empty: none
 

@@ -64,9 +64,10 @@ Chain RayTracing::closest_hits(Chain chain, std::size_t ray_count, const TraceOp
 TracedRays RayTracing::on_device(std::span<const Ray> rays, const TraceOptions& options) {
   upload_rays(gpu_, rays);
   const Chain chain = closest_hits(gpu_.chain(), rays.size(), options);
-  const double ms = gpu_.record(chain.steps()).submit_and_wait(limit_seconds).total_ms;
+  const Recorder::Times times =
+      gpu_.record(chain.steps(), Timestamps::every_step).submit_and_wait(limit_seconds);
   TracedRays traced = result(gpu_, rays.size());
-  traced.ms = ms;
+  traced.ms = times.steps_ms.empty() ? times.total_ms : times.total_ms - times.steps_ms[0];  // less the clear
   return traced;
 }
 

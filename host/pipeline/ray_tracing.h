@@ -13,7 +13,7 @@ struct TracedRays {
   std::vector<Hit> hits;
   std::uint64_t hit_count = 0;
   std::uint32_t error_word = 0;
-  double ms = 0;  // of the device
+  double ms = 0;  // of the kernels that trace
 };
 
 // Traces given rays through a tree that the host has, on the device and by the twins.
