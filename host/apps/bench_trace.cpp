@@ -49,9 +49,8 @@ void add_frame(CheckedDevice& device, Options options, const Scene& scene, Bench
   const double mrays_per_s = static_cast<double>(frame.rays) / frame.trace_ms / 1000;
   row.figures = {{"frame_ms", frame.trace_ms}, {"frame_millions_per_s", mrays_per_s}};
   char note[80];
-  std::snprintf(note, sizeof note, ", the whole picture %.3f ms, %.2f millions/s", frame.trace_ms,
-                mrays_per_s);
-  row.note += note;
+  std::snprintf(note, sizeof note, "whole picture %.3f ms, %.2f millions/s", frame.trace_ms, mrays_per_s);
+  row.note = note;
 }
 
 void bench_tree(CheckedDevice& device, const Options& options, const Scene& scene, const SceneArrays& arrays,
@@ -67,16 +66,15 @@ void bench_tree(CheckedDevice& device, const Options& options, const Scene& scen
                 [](const Ray& ray) { return ray.direction == vec3(0); });  // of rays that hit nothing
   for (const std::vector<Ray>* const rays : {&primary, static_cast<const std::vector<Ray>*>(&bounced)}) {
     const std::string name = rays == &primary ? "trace_primary" : "trace_diffuse";
-    if (rays->empty() || !is_wanted(options, name, scene.name)) continue;
+    const std::string input = scene.name + " " + options.builder;
+    if (rays->empty() || !is_wanted(options, name, input)) continue;
     check_hits(tracing, *rays, trace, device.device.properties().type == DeviceType::cpu);
     const auto run = [&] {
       const TracedRays traced = tracing.on_device(*rays, trace);
       if (traced.error_word) throw DeviceError(describe_error_word(traced.error_word));
       return traced.ms;
     };
-    BenchRow row =
-        bench_row(name, scene.name, rays->size(), measure_steady(steady_options(options, run()), run));
-    row.note = "through the tree of " + options.builder;
+    BenchRow row = bench_row(name, input, rays->size(), measure_steady(steady_options(options, run()), run));
     if (rays == &primary) add_frame(device, options, scene, row);
     add(row);
   }

@@ -9,7 +9,7 @@ namespace coppice {
 namespace {
 
 void print_row(const BenchRow& row) {
-  std::printf("  %-15s %-11s %10llu %10.3f %10.3f %10.3f %10.2f", row.name.c_str(), row.input.c_str(),
+  std::printf("  %-15s %-16s %10llu %10.3f %10.3f %10.3f %10.2f", row.name.c_str(), row.input.c_str(),
               static_cast<unsigned long long>(row.size), row.ms.median, row.ms.least, row.ms.greatest,
               row.millions_per_s());
   if (!row.note.empty()) std::printf("  %s", row.note.c_str());
@@ -33,7 +33,7 @@ int run_bench(const Options& options) {
   const DeviceProperties& properties = device.device.properties();
   std::vector<BenchRow> rows;
   if (talks(options)) {
-    std::printf("%s, %s\n  %-15s %-11s %10s %10s %10s %10s %10s\n", properties.name.c_str(),
+    std::printf("%s, %s\n  %-15s %-16s %10s %10s %10s %10s %10s\n", properties.name.c_str(),
                 properties.driver.c_str(), "", "input", "size", "median ms", "min", "max", "millions/s");
   }
   std::ranges::find(benches(), options.bench, &NamedBench::name)->run(device, options, [&](BenchRow row) {
