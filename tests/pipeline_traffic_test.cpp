@@ -112,6 +112,18 @@ TEST(Traffic, OfAScanWithAndWithoutLookback) {
   }
 }
 
+TEST(Traffic, OfASortOfKeysAlone) {
+  Layout layout;
+  const BuildPlan plan = plan_sort(layout, triangles, {.morton_bits = 60}, false);
+  Chain chain({0});
+  append_sort(chain, plan);
+  std::uint64_t bytes = 0;
+  for (const Step& step : chain.steps()) {
+    if (step.stage == &stages::sort_pass) bytes += modelled_bytes(step, {}).value();
+  }
+  EXPECT_EQ(bytes, 8u * (320000 + 2 * 3 * 1024));
+}
+
 TEST(Traffic, EveryStageHasAModel) {
   for (const StageDeclaration* stage : all_stages()) {
     Step step;
