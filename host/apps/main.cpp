@@ -195,6 +195,7 @@ int run(int argc, char** argv) {
       ->check(CLI::Range(1u, 10000u))
       ->capture_default_str();
   build->add_flag("--rounds", options.rounds, "a table of the rounds of PLOC on the device");
+  build->add_flag("--wide", options.wide, "then convert the tree to wide nodes on the device");
   CLI::App* const lockstep =
       app.add_subcommand("lockstep", "every stage on device and CPU; the first difference, or none");
   add_picture(*lockstep, options);

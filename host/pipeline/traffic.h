@@ -16,7 +16,7 @@ struct RunCounts {
   std::uint32_t active_count = 0;  // triangles in the tree
   std::vector<PlocRound> rounds;   // every entered round, the last with one cluster; empty: no build
   std::uint32_t wide_nodes = 0;
-  std::vector<WideLevel> wide_levels;  // all of them, and an empty one; none without wide nodes
+  std::vector<WideLevel> wide_levels;           // all of them; behind them none or empty ones
   std::uint64_t rays = 0, hits = 0, steps = 0;  // of the whole trace
 };
 
