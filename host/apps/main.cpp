@@ -111,6 +111,15 @@ void add_ploc(CLI::App& command, Options& options) {
       ->capture_default_str();
 }
 
+void add_tree(CLI::App& command, Options& options) {
+  command
+      .add_option("--tree", options.tree,
+                  "which the device's tracer walks; wide: eight children a node, rays in packets; auto: wide on CPU "
+                  "devices where the picture has more rays than the scene triangles")
+      ->check(CLI::IsMember({"auto", "binary", "wide"}))
+      ->capture_default_str();
+}
+
 void add_intersection(CLI::App& command, Options& options) {
   command
       .add_option("--triangle-test", options.triangle_test,
@@ -221,6 +230,7 @@ int run(int argc, char** argv) {
   CLI::App* const bench = app.add_subcommand("bench", "times of sort, build or trace, results checked first");
   add_bench(*bench, options);
   for (CLI::App* const command : {render, lockstep, compare, bench}) add_intersection(*command, options);
+  for (CLI::App* const command : {render, lockstep}) add_tree(*command, options);
   for (CLI::App* const command : {render, compare})
     command->add_option("--runs", options.frames, "build and trace so many times; times are medians")
         ->check(CLI::Range(1u, 10000u))

@@ -60,11 +60,13 @@ RunCounts counts_of_build(const GpuExecutor& executor, const BuildPlan& plan, co
   counts.active_count = state.active_count;
   if (plan.rounds.count > 0)  // only PLOC has rounds
     counts.rounds = executor.read(Slot<PlocRound>{plan.rounds.place, state.round_count + 1});
-  if (wide) {
-    counts.wide_nodes = executor.read(plan.wide_counts)[0].node_count;
-    counts.wide_levels = executor.read(wide->levels);
-  }
+  if (wide) count_wide(executor, plan, *wide, counts);
   return counts;
+}
+
+void count_wide(const GpuExecutor& executor, const TreeSlots& tree, const WidePlan& wide, RunCounts& counts) {
+  counts.wide_nodes = executor.read(tree.wide_counts)[0].node_count;
+  counts.wide_levels = executor.read(wide.levels);
 }
 
 namespace {

@@ -30,6 +30,9 @@ void describe_tree(BuildReport& report, std::span<const Node> nodes);
 // What the build of the last submit left that the models of its stages need.
 RunCounts counts_of_build(const GpuExecutor& executor, const BuildPlan& plan, const WidePlan* wide = nullptr);
 
+// Adds what the conversion to wide nodes left.
+void count_wide(const GpuExecutor& executor, const TreeSlots& tree, const WidePlan& wide, RunCounts& counts);
+
 // Builds options.runs times after a warm-up, measures, and describes the tree. `trace_events` may be empty.
 // With a plan for wide nodes the last tree is then converted as often, timed by itself.
 BuildReport measure_gpu_build(CheckedDevice& device, GpuExecutor& executor, const BuildPlan& plan,

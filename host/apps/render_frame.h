@@ -6,9 +6,11 @@ namespace coppice {
 
 struct RenderReport {
   BuildReport build;
+  double wide_ms = 0;  // of the conversion to wide nodes; 0 where the binary tree is walked
   double trace_ms = 0;
   std::uint64_t rays = 0, hits = 0, steps = 0;
   std::string trace_device;  // name and driver
+  bool walks_wide = false;
   KernelTable kernels;       // of the trace, on a device
   std::vector<uint> image;   // RGBA8
 };

@@ -128,13 +128,17 @@ std::optional<Bytes> trace_bytes(const Step& step, const RunCounts& counts) {
     const Bytes walked = counts.steps * 2 * sizeof(Node) + counts.hits * sizeof(Triangle);
     return a->ray_count * ray_and_hit + share(walked, a->ray_count, counts);
   }
+  if (const auto* a = args_of(step, stages::trace_wide)) {
+    const Bytes walked = counts.steps / TRACE_PACKET * sizeof(WideNode) + counts.hits * sizeof(Triangle);
+    return a->ray_count * ray_and_hit + share(walked, a->ray_count, counts);
+  }
   if (const auto* a = args_of(step, stages::trace_brute_force))
     return a->ray_count * ray_and_hit + a->triangle_count * sizeof(Triangle);
   if (const auto* a = args_of(step, stages::bounce_rays))
     return a->ray_count * (2 * (sizeof(Ray) + sizeof(Hit))) +
            share(counts.hits, a->ray_count, counts) * sizeof(Triangle);
   if (const auto* a = args_of(step, stages::shade)) return shade_bytes(*a, counts);
-  if (const auto* a = args_of(step, stages::resolve)) return Bytes{a->pixel_count} * (sizeof(vec3) + 4);
+  if (const auto* a = args_of(step, stages::resolve)) return Bytes{a->ray_count} * (sizeof(vec3) + 4);
   return std::nullopt;
 }
 

@@ -32,6 +32,7 @@
   STAGE(wide_quantise, WideQuantiseArgs)        \
   STAGE(camera_rays, CameraRaysArgs)            \
   STAGE(trace_closest, TraceClosestArgs)        \
+  STAGE(trace_wide, TraceWideArgs)              \
   STAGE(trace_brute_force, TraceBruteForceArgs) \
   STAGE(bounce_rays, BounceRaysArgs)            \
   STAGE(shade, ShadeArgs)                       \

@@ -21,6 +21,8 @@ struct WideNode {
   uint child[WIDE_CHILDREN];
 };
 
+const uint WIDE_NODE_WORDS = 24;
+
 INTERFACE_BUFFER(WideNodeBuffer, WideNode, 16)
 
 // The conversion goes level by level, so a wide node first has an index in breadth-first order, and its place
