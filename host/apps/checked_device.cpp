@@ -36,7 +36,8 @@ TraceOptions CheckedDevice::trace_options(const Options& options) const {
 
 bool CheckedDevice::walks_wide(const Options& options, std::uint32_t triangle_count) const {
   const TraceOptions trace = trace_options(options);
-  const bool can = !trace.brute_force && trace.triangle_test == TRIANGLE_WATERTIGHT && trace.box_test == BOX_ROBUST;
+  const bool can =
+      !trace.brute_force && trace.triangle_test == TRIANGLE_WATERTIGHT && trace.box_test == BOX_ROBUST;
   if (options.tree != "auto") {
     if (options.tree == "wide" && !can)
       throw InputError("--tree wide is traced with the watertight and the robust test, and needs a tree");
@@ -44,7 +45,8 @@ bool CheckedDevice::walks_wide(const Options& options, std::uint32_t triangle_co
   }
   const std::uint64_t rays = std::uint64_t{options.width} * options.height * options.samples;
   const DeviceProperties& properties = device.properties();
-  return can && properties.type == DeviceType::cpu && properties.loop_turn_limit == 0 && rays > triangle_count;
+  return can && properties.type == DeviceType::cpu && properties.loop_turn_limit == 0 &&
+         rays > triangle_count;
 }
 
 CheckedDevice open_device(const Options& options) {

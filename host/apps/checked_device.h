@@ -15,8 +15,8 @@ struct CheckedDevice {
   BuildOptions build_options(const Options& options, std::uint32_t morton_bits) const;
   // Of the binary tree.
   TraceOptions trace_options(const Options& options) const;
-  // Whether a picture of a scene of so many triangles is traced through the wide tree. Throws InputError where the
-  // options ask for it and cannot have it.
+  // Whether a picture of a scene of so many triangles is traced through the wide tree. Throws InputError
+  // where the options ask for it and cannot have it.
   bool walks_wide(const Options& options, std::uint32_t triangle_count) const;
 };
 

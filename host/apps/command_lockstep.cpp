@@ -32,8 +32,8 @@ struct HitTolerance {
   LockstepExecutor::Tolerate judge(const LockstepExecutor& executor, const TracePlan& plan) {
     return [this, &executor, &plan](const Difference& difference) {
       if (difference.stage != "trace_closest" && difference.stage != "trace_wide" &&
-          difference.stage != "trace_brute_force" &&
-          difference.stage != "shade" && difference.stage != "resolve" && difference.stage != "camera_rays") {
+          difference.stage != "trace_brute_force" && difference.stage != "shade" &&
+          difference.stage != "resolve" && difference.stage != "camera_rays") {
         return false;
       }
       ++stages;
@@ -55,9 +55,8 @@ int run_lockstep(const Options& options) {
   const SceneArrays arrays = scene_arrays(scene);
   CheckedDevice device = open_device(options);
   Layout layout(device.device.properties().max_block_bytes);
-  BuildPlan build =
-      plan_build(layout, static_cast<std::uint32_t>(arrays.triangles.size()),
-                 device.build_options(options, morton_bits_for(options, arrays.triangles)));
+  BuildPlan build = plan_build(layout, static_cast<std::uint32_t>(arrays.triangles.size()),
+                               device.build_options(options, morton_bits_for(options, arrays.triangles)));
   TraceOptions trace_options = device.trace_options(options);
   trace_options.wide = device.walks_wide(options, build.triangle_count);
   std::optional<WidePlan> wide;

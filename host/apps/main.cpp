@@ -113,9 +113,10 @@ void add_ploc(CLI::App& command, Options& options) {
 
 void add_tree(CLI::App& command, Options& options) {
   command
-      .add_option("--tree", options.tree,
-                  "which the device's tracer walks; wide: eight children a node, rays in packets; auto: wide on CPU "
-                  "devices where the picture has more rays than the scene triangles")
+      .add_option(
+          "--tree", options.tree,
+          "which the device's tracer walks; wide: eight children a node, rays in packets; auto: wide on CPU "
+          "devices where the picture has more rays than the scene triangles")
       ->check(CLI::IsMember({"auto", "binary", "wide"}))
       ->capture_default_str();
 }

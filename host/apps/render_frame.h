@@ -11,8 +11,8 @@ struct RenderReport {
   std::uint64_t rays = 0, hits = 0, steps = 0;
   std::string trace_device;  // name and driver
   bool walks_wide = false;
-  KernelTable kernels;       // of the trace, on a device
-  std::vector<uint> image;   // RGBA8
+  KernelTable kernels;      // of the trace, on a device
+  std::vector<uint> image;  // RGBA8
 };
 
 // Builds and traces in one submit, nothing read back in between; with a CPU builder its tree is uploaded

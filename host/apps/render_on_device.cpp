@@ -29,8 +29,8 @@ struct FramePlan {
   TracePlan trace;
 };
 
-// The chain of one frame: with a builder on the device its build comes first, up to the first mark, then the wide tree
-// if it is walked, up to the second.
+// The chain of one frame: with a builder on the device its build comes first, up to the first mark, then the
+// wide tree if it is walked, up to the second.
 struct FrameChain {
   std::vector<Step> steps;
   std::size_t tree_steps;
@@ -84,8 +84,8 @@ RunCounts counts_of_tree(const GpuExecutor& executor, const FramePlan& plan) {
   return counts;
 }
 
-void split_kernels(CheckedDevice& device, GpuExecutor& executor, const FrameChain& chain, const FramePlan& plan,
-                   const Options& options, RenderReport& report) {
+void split_kernels(CheckedDevice& device, GpuExecutor& executor, const FrameChain& chain,
+                   const FramePlan& plan, const Options& options, RenderReport& report) {
   const std::span<const Step> steps = chain.steps;
   const KernelSplit tree_split = split_time(executor, steps.first(chain.tree_steps), limit_seconds);
   const RunCounts tree_counts = counts_of_tree(executor, plan);

@@ -109,9 +109,10 @@ void append_trace(Chain& chain, const TreeSlots& tree, const TracePlan& plan) {
                  chain.at(plan.lighting), rays, hits, radiance, count, sample},
                 groups_of(count, SHADE_GROUP), {plan.options.directional_light});
     }
-    chain.run(stages::resolve,
-              {chain.at(plan.film), radiance, chain.at(plan.srgb_thresholds), chain.at(plan.image), first, count},
-              groups_of(count, RESOLVE_GROUP));
+    chain.run(
+        stages::resolve,
+        {chain.at(plan.film), radiance, chain.at(plan.srgb_thresholds), chain.at(plan.image), first, count},
+        groups_of(count, RESOLVE_GROUP));
   }
 }
 

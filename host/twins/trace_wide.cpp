@@ -105,9 +105,7 @@ class Packet {
   const std::vector<Hit>& hits() const { return hits_; }
 
  private:
-  float farthest() const {
-    return std::ranges::max_element(hits_, {}, &Hit::t)->t;
-  }
+  float farthest() const { return std::ranges::max_element(hits_, {}, &Hit::t)->t; }
 
   bool any_meets(const Box& box) const {
     for (std::size_t i = 0; i < rays_.size(); ++i) {
@@ -164,7 +162,8 @@ uint trace_packet(const TraceWideArgs& args, uint first, uint count) {
     indices.push_back(i);
   }
   const uint visited = packet.trace();
-  for (std::size_t k = 0; k < indices.size(); ++k) packet.rays()[k].keep(packet.hits()[k], args.hits[indices[k]]);
+  for (std::size_t k = 0; k < indices.size(); ++k)
+    packet.rays()[k].keep(packet.hits()[k], args.hits[indices[k]]);
   return visited;
 }
 

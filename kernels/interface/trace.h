@@ -37,8 +37,8 @@ struct Hit {
   float u, v;     // barycentric coordinates of corners b and c
 };
 
-// Rays of a picture come in strips of so many rows (the last may have fewer), from left to right, in each column of a
-// strip from top to bottom: 64 rays that follow each other are a square of pixels.
+// Rays of a picture come in strips of so many rows (the last may have fewer), from left to right, in each
+// column of a strip from top to bottom: 64 rays that follow each other are a square of pixels.
 const uint FILM_STRIP = 8;
 
 // Pinhole camera: a ray through film coordinates (x, y) in [0, width) x [0, height) has the direction
@@ -69,8 +69,8 @@ struct Lighting {
   float padding2;
 };
 
-// Counted on the device; 64-bit sums as (low, high) words. Steps are pairs of binary nodes that rays visit, or wide
-// nodes that their packets visit.
+// Counted on the device; 64-bit sums as (low, high) words. Steps are pairs of binary nodes that rays visit,
+// or wide nodes that their packets visit.
 struct TraceCounters {
   uvec2 rays, hits, steps;
   uint padding0, padding1;
