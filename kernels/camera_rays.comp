@@ -3,14 +3,15 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/trace.h"
+#include "lib/film_pixel.glsl"
 
 layout(local_size_x = CAMERA_RAYS_GROUP) in;
 layout(push_constant, scalar) uniform Push { CameraRaysArgs args; };
 
-vec2 film_position(uint pixel, Film film) {
+vec2 film_position(uvec2 pixel, Film film) {
   precise float across = (float(args.sample_index) + 0.5) / float(film.samples);
   float down = film.samples == 1u ? 0.5 : float(bitfieldReverse(args.sample_index) >> 8) * 5.9604644775390625e-8;
-  precise vec2 position = vec2(float(pixel % film.width) + across, float(pixel / film.width) + down);
+  precise vec2 position = vec2(float(pixel.x) + across, float(pixel.y) + down);
   return position;
 }
 
@@ -18,7 +19,7 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= args.ray_count) return;
   Film film = args.film.at[0];
-  vec2 position = film_position(args.first_pixel + i, film);
+  vec2 position = film_position(film_pixel(args.first_ray + i, film), film);
   precise vec3 direction = film.corner + film.right * position.x + film.down * position.y;
   float far = uintBitsToFloat(0x7f800000u);
   args.rays.at[i] = Ray(film.position, 0.0, direction, far);

@@ -17,11 +17,11 @@
 #include "lib/ploc_search.glsl"
 
 layout(local_size_x_id = DEVICE_SUBGROUP_SIZE_ID) in;
-layout(constant_id = DEVICE_LANES_IN_STEP_ID) const bool LANES_IN_STEP = false;
 layout(constant_id = 0) const uint CLUSTER_LIMIT = HPLOC_CLUSTERS;  // args.cluster_limit
 layout(push_constant, scalar) uniform Push { HplocBuildArgs args; };
 
 #include "lib/hploc_level.glsl"
+#include "lib/subgroup_sync.glsl"
 #include "lib/hploc_merge.glsl"
 
 // A complete node: the places from first to last, and how many clusters are left of them.

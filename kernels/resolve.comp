@@ -3,6 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/trace.h"
+#include "lib/film_pixel.glsl"
 
 layout(local_size_x = RESOLVE_GROUP) in;
 layout(push_constant, scalar) uniform Push { ResolveArgs args; };
@@ -17,8 +18,10 @@ uint srgb_code(float linear) {
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
-  if (i >= args.pixel_count) return;
-  precise vec3 mean = args.radiance.at[i] / float(args.samples);
-  args.image.at[args.first_pixel + i] =
+  if (i >= args.ray_count) return;
+  Film film = args.film.at[0];
+  precise vec3 mean = args.radiance.at[i] / float(film.samples);
+  uvec2 pixel = film_pixel(args.first_ray + i, film);
+  args.image.at[pixel.y * film.width + pixel.x] =
       0xff000000u | (srgb_code(mean.z) << 16) | (srgb_code(mean.y) << 8) | srgb_code(mean.x);
 }

@@ -8,6 +8,7 @@
 #include "pipeline/scan.h"
 #include "pipeline/trace.h"
 #include "pipeline/traffic.h"
+#include "pipeline/wide.h"
 #include "stages/stages.h"
 
 namespace coppice {
@@ -67,6 +68,29 @@ TEST(Traffic, OfABuildWithoutLookbackAndWith60Bits) {
   EXPECT_EQ(bytes["ploc_nearest"], 19000u * 36 + 19000 / 2 + 3000 * 4);
   EXPECT_EQ(bytes["ploc_tile_counts"], 4u * 22000 + 8 * 22);
   EXPECT_EQ(bytes["ploc_tile_scan"], 24u * 22);
+}
+
+// 64 triangles under 9 wide nodes: the root has 8, which have 8 leaves each.
+TEST(Traffic, OfWideNodes) {
+  RunCounts counts;
+  counts.active_count = 64;
+  counts.wide_nodes = 9;
+  counts.wide_levels.resize(3);
+  counts.wide_levels[0].count = 1;
+  counts.wide_levels[1].count = 8;
+  Layout layout;
+  TreeSlots tree = plan_tree(layout, 64, 127);
+  const WidePlan plan = plan_wide(layout, tree);
+  Chain chain({0});
+  append_wide(chain, tree, plan);
+  std::map<std::string, std::uint64_t> bytes;
+  for (const Step& step : chain.steps()) {
+    if (step.stage) bytes[step.stage->name] += modelled_bytes(step, counts).value();
+  }
+  EXPECT_EQ(bytes["wide_root"], 52u + 7 * 64);
+  EXPECT_EQ(bytes["wide_collapse"], 9 * 48u + 8 * 52 + 56 * 64);
+  EXPECT_EQ(bytes["wide_sizes"], 9 * 28u);
+  EXPECT_EQ(bytes["wide_quantise"], 9 * (152u + 32) + 72 * 32);
 }
 
 TEST(Traffic, OfATraceOfTwoSamples) {

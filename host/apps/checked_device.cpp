@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "pipeline/self_check.h"
+#include "scene/input_error.h"
 
 namespace coppice {
 
@@ -31,6 +32,21 @@ TraceOptions CheckedDevice::trace_options(const Options& options) const {
     trace.visits_per_turn = 2;
   }
   return trace;
+}
+
+bool CheckedDevice::walks_wide(const Options& options, std::uint32_t triangle_count) const {
+  const TraceOptions trace = trace_options(options);
+  const bool can =
+      !trace.brute_force && trace.triangle_test == TRIANGLE_WATERTIGHT && trace.box_test == BOX_ROBUST;
+  if (options.tree != "auto") {
+    if (options.tree == "wide" && !can)
+      throw InputError("--tree wide is traced with the watertight and the robust test, and needs a tree");
+    return options.tree == "wide";
+  }
+  const std::uint64_t rays = std::uint64_t{options.width} * options.height * options.samples;
+  const DeviceProperties& properties = device.properties();
+  return can && properties.type == DeviceType::cpu && properties.loop_turn_limit == 0 &&
+         rays > triangle_count;
 }
 
 CheckedDevice open_device(const Options& options) {

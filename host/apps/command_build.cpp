@@ -1,5 +1,6 @@
 #include "apps/frame.h"
 #include "apps/measure_build.h"
+#include "scene/input_error.h"
 #include "scene/scene_source.h"
 
 namespace coppice {
@@ -10,12 +11,14 @@ BuildReport build_on_device(const Options& options, const SceneArrays& arrays, B
                             int& status) {
   CheckedDevice device = open_device(options);
   Layout layout(device.device.properties().max_block_bytes);
-  const BuildPlan plan = plan_build(layout, static_cast<std::uint32_t>(arrays.triangles.size()),
-                                    device.build_options(options, report.morton_bits));
+  BuildPlan plan = plan_build(layout, static_cast<std::uint32_t>(arrays.triangles.size()),
+                              device.build_options(options, report.morton_bits));
+  std::optional<WidePlan> wide;
+  if (options.wide) wide = plan_wide(layout, plan, &plan);
   GpuExecutor executor(device.device, layout);
   executor.upload(plan.triangles, std::span<const Triangle>(arrays.triangles));
   for (const std::uint64_t bytes : layout.block_bytes()) report.device_bytes += bytes;
-  report = measure_gpu_build(device, executor, plan, report, options);
+  report = measure_gpu_build(device, executor, plan, report, options, wide ? &*wide : nullptr);
   status = validation_status(device.device);
   return report;
 }
@@ -26,6 +29,8 @@ int run_build(const Options& options) {
   const Scene scene = open_scene(options.scene);
   print_warnings(scene);
   const SceneArrays arrays = scene_arrays(scene);
+  if (options.wide && !find_device_builder(options.builder))
+    throw InputError("--wide converts trees that a device builds, not those of " + options.builder);
   BuildReport report = report_for(options, scene, arrays.triangles);
   int status = 0;
   Bvh bvh;

@@ -36,6 +36,7 @@ ComparisonRow measure(const std::string& scene, const std::string& builder, cons
   add("--runs", std::to_string(options.frames));
   add("--radius", std::to_string(options.radius));
   add("--leaf-size", std::to_string(options.leaf_size));
+  add("--tree", "binary");  // the builders' own
   add("--triangle-test", options.triangle_test);
   add("--box-test", options.box_test);
   add("--morton-bits", options.morton_bits);

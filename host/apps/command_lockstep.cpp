@@ -5,6 +5,7 @@
 #include "apps/frame.h"
 #include "apps/measure_build.h"
 #include "apps/report.h"
+#include "pipeline/wide.h"
 #include "scene/scene_source.h"
 #include "stages/errors.h"
 #include "stages/lockstep_executor.h"
@@ -30,8 +31,9 @@ struct HitTolerance {
 
   LockstepExecutor::Tolerate judge(const LockstepExecutor& executor, const TracePlan& plan) {
     return [this, &executor, &plan](const Difference& difference) {
-      if (difference.stage != "trace_closest" && difference.stage != "trace_brute_force" &&
-          difference.stage != "shade" && difference.stage != "resolve" && difference.stage != "camera_rays") {
+      if (difference.stage != "trace_closest" && difference.stage != "trace_wide" &&
+          difference.stage != "trace_brute_force" && difference.stage != "shade" &&
+          difference.stage != "resolve" && difference.stage != "camera_rays") {
         return false;
       }
       ++stages;
@@ -53,11 +55,14 @@ int run_lockstep(const Options& options) {
   const SceneArrays arrays = scene_arrays(scene);
   CheckedDevice device = open_device(options);
   Layout layout(device.device.properties().max_block_bytes);
-  const BuildPlan build =
-      plan_build(layout, static_cast<std::uint32_t>(arrays.triangles.size()),
-                 device.build_options(options, morton_bits_for(options, arrays.triangles)));
-  const TracePlan trace = plan_trace(layout, build, static_cast<std::uint32_t>(arrays.materials.size()),
-                                     device.trace_options(options));
+  BuildPlan build = plan_build(layout, static_cast<std::uint32_t>(arrays.triangles.size()),
+                               device.build_options(options, morton_bits_for(options, arrays.triangles)));
+  TraceOptions trace_options = device.trace_options(options);
+  trace_options.wide = device.walks_wide(options, build.triangle_count);
+  std::optional<WidePlan> wide;
+  if (trace_options.wide) wide = plan_wide(layout, build, &build);
+  const TracePlan trace =
+      plan_trace(layout, build, static_cast<std::uint32_t>(arrays.materials.size()), trace_options);
   LockstepExecutor executor(device.device, layout);
   upload_frame(executor, build, trace, arrays,
                make_film(scene, options.camera, options.width, options.height, options.samples));
@@ -67,6 +72,7 @@ int run_lockstep(const Options& options) {
   const auto difference = executor.run(
       [&](Chain& chain) {
         append_build(chain, build);
+        if (wide) append_wide(chain, build, *wide);
         append_trace(chain, build, trace);
       },
       exact_trace ? LockstepExecutor::Tolerate() : tolerance.judge(executor, trace));

@@ -32,6 +32,8 @@ Json to_json(const RenderReport& report, const Scene& scene, const Options& opti
           {"spp", options.samples},
           {"tracer", options.tracer},
           {"trace_device", report.trace_device},
+          {"tree", report.walks_wide ? "wide" : "binary"},
+          {"wide_ms", report.wide_ms},
           {"trace_ms", report.trace_ms},
           {"rays",
            {{"primary", report.rays},
@@ -60,6 +62,8 @@ void print_render(const RenderReport& report, const Options& options, double loa
   std::printf("  build    %9.1f ms  %s on %s", build.build_ms.median, build.builder.c_str(),
               build.device.c_str());
   std::printf(", SAH cost %.2f, depth %u\n", build.quality.sah, build.quality.depth);
+  if (report.walks_wide)
+    std::printf("  wide     %9.1f ms  the tree with eight children a node\n", report.wide_ms);
   std::printf("  trace    %9.1f ms  %ux%u, %u spp, %.2f Mrays/s on the %s\n", report.trace_ms, options.width,
               options.height, options.samples, static_cast<double>(report.rays) / report.trace_ms / 1000,
               options.tracer.c_str());

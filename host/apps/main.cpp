@@ -112,6 +112,16 @@ void add_ploc(CLI::App& command, Options& options) {
       ->capture_default_str();
 }
 
+void add_tree(CLI::App& command, Options& options) {
+  command
+      .add_option(
+          "--tree", options.tree,
+          "which the device's tracer walks; wide: eight children a node, rays in packets; auto: wide on CPU "
+          "devices where the picture has more rays than the scene triangles")
+      ->check(CLI::IsMember({"auto", "binary", "wide"}))
+      ->capture_default_str();
+}
+
 void add_intersection(CLI::App& command, Options& options) {
   command
       .add_option("--triangle-test", options.triangle_test,
@@ -206,6 +216,7 @@ int run(int argc, char** argv) {
       ->check(CLI::Range(1u, 10000u))
       ->capture_default_str();
   build->add_flag("--rounds", options.rounds, "a table of the rounds of PLOC on the device");
+  build->add_flag("--wide", options.wide, "then convert the tree to wide nodes on the device");
   CLI::App* const lockstep =
       app.add_subcommand("lockstep", "every stage on device and CPU; the first difference, or none");
   add_picture(*lockstep, options);
@@ -232,6 +243,7 @@ int run(int argc, char** argv) {
       app.add_subcommand("bench", "times of sort, scan, PLOC, build or trace, results checked first");
   add_bench(*bench, options);
   for (CLI::App* const command : {render, lockstep, compare, bench}) add_intersection(*command, options);
+  for (CLI::App* const command : {render, lockstep}) add_tree(*command, options);
   for (CLI::App* const command : {render, compare})
     command->add_option("--runs", options.frames, "build and trace so many times; times are medians")
         ->check(CLI::Range(1u, 10000u))

@@ -22,6 +22,11 @@ std::vector<Node> read_tree(const GpuExecutor& executor, const TreeSlots& tree) 
   return executor.read(Slot<Node>{tree.nodes.place, active == 0 ? 0 : 2 * active - 1});
 }
 
+std::vector<WideNode> read_wide_tree(const GpuExecutor& executor, const TreeSlots& tree) {
+  const WideCounts counts = executor.read(tree.wide_counts)[0];
+  return executor.read(Slot<WideNode>{tree.wide_nodes.place, counts.node_count});
+}
+
 std::uint32_t morton_bits_for(const Options& options, std::span<const Triangle> triangles) {
   if (options.morton_bits == "auto") return choose_morton_bits(triangles);
   return options.morton_bits == "60" ? 60 : 30;
@@ -49,18 +54,44 @@ void describe_tree(BuildReport& report, std::span<const Node> nodes) {
   report.tree_hash = tree_hash(nodes);
 }
 
-RunCounts counts_of_build(const GpuExecutor& executor, const BuildPlan& plan) {
+RunCounts counts_of_build(const GpuExecutor& executor, const BuildPlan& plan, const WidePlan* wide) {
   const BuildState state = executor.read(plan.state)[0];
   RunCounts counts;
   counts.active_count = state.active_count;
   if (plan.rounds.count > 0)  // only PLOC has rounds
     counts.rounds = executor.read(Slot<PlocRound>{plan.rounds.place, state.round_count + 1});
+  if (wide) count_wide(executor, plan, *wide, counts);
   return counts;
 }
 
+void count_wide(const GpuExecutor& executor, const TreeSlots& tree, const WidePlan& wide, RunCounts& counts) {
+  counts.wide_nodes = executor.read(tree.wide_counts)[0].node_count;
+  counts.wide_levels = executor.read(wide.levels);
+}
+
+namespace {
+
+constexpr double limit_seconds = 120;
+
+// Converts the tree of the last submit options.runs times after a warm-up.
+void measure_wide(GpuExecutor& executor, const TreeSlots& tree, const WidePlan& wide, BuildReport& report,
+                  std::uint32_t runs) {
+  Chain chain = executor.chain();
+  append_wide(chain, tree, wide);
+  Recorder recorder = executor.record(chain.steps());
+  recorder.submit_and_wait(limit_seconds);  // compiles the kernels
+  std::vector<double> wide_ms;
+  for (std::uint32_t run = 0; run < runs; ++run)
+    wide_ms.push_back(recorder.submit_and_wait(limit_seconds).total_ms);
+  check_state(executor, tree);
+  report.wide_ms = spread_of(wide_ms);
+  report.wide = measure_wide_quality(read_wide_tree(executor, tree));
+}
+
+}  // namespace
+
 BuildReport measure_gpu_build(CheckedDevice& device, GpuExecutor& executor, const BuildPlan& plan,
-                              BuildReport report, const Options& options) {
-  constexpr double limit_seconds = 120;
+                              BuildReport report, const Options& options, const WidePlan* wide) {
   Chain chain = executor.chain();
   append_build(chain, plan);
   Recorder recorder = executor.record(chain.steps());
@@ -78,18 +109,24 @@ BuildReport measure_gpu_build(CheckedDevice& device, GpuExecutor& executor, cons
     }
     progress.step();
   }
+  report.build_ms = spread_of(build_ms);
+  double untimed_ms = report.build_ms.median;
+  if (wide) {
+    measure_wide(executor, plan, *wide, report, options.runs);
+    untimed_ms += report.wide_ms.median;
+    append_wide(chain, plan, *wide);
+  }
   const KernelSplit split = split_time(executor, chain.steps(), limit_seconds);
   write_trace_events(options.trace_events, split);
   check_state(executor, plan);
 
   report.device = device.device.properties().name;
   report.driver = device.device.properties().driver;
-  report.build_ms = spread_of(build_ms);
   report.wall_ms = spread_of(wall_ms);
   report.runs = options.runs;
-  const RunCounts counts = counts_of_build(executor, plan);
+  const RunCounts counts = counts_of_build(executor, plan, wide);
   const auto limit = find_copy_limit(device.device, largest_dispatch(split, counts));
-  report.kernels = kernel_table(split, counts, limit, report.build_ms.median);
+  report.kernels = kernel_table(split, counts, limit, untimed_ms);
   if (options.rounds) report.ploc_rounds = ploc_round_times(split, counts);
   report.rounds = executor.read(plan.state)[0].round_count;
   report.rounds_bound = plan.rounds_bound;

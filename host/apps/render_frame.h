@@ -6,11 +6,13 @@ namespace coppice {
 
 struct RenderReport {
   BuildReport build;
+  double wide_ms = 0;  // of the conversion to wide nodes; 0 where the binary tree is walked
   double trace_ms = 0;
   std::uint64_t rays = 0, hits = 0, steps = 0;
   std::string trace_device;  // name and driver
-  KernelTable kernels;       // of the trace, on a device
-  std::vector<uint> image;   // RGBA8
+  bool walks_wide = false;
+  KernelTable kernels;      // of the trace, on a device
+  std::vector<uint> image;  // RGBA8
 };
 
 // Builds and traces in one submit, nothing read back in between; with a CPU builder its tree is uploaded

@@ -3,6 +3,7 @@
 
 #include "apps/frame.h"
 #include "apps/render_frame.h"
+#include "pipeline/wide.h"
 
 namespace coppice {
 
@@ -21,65 +22,82 @@ void upload_tree(GpuExecutor& executor, const TreeSlots& tree, const Bvh& bvh) {
   executor.upload(tree.state, std::span<const BuildState>(&state, 1));
 }
 
-// The chain of one frame: with a builder on the device its build comes first, up to the mark.
-struct FrameChain {
-  std::vector<Step> steps;
-  std::size_t build_steps;
+struct FramePlan {
+  std::optional<BuildPlan> build;  // on the device
+  std::optional<WidePlan> wide;
+  TreeSlots tree;
+  TracePlan trace;
 };
 
-FrameChain frame_chain(const GpuExecutor& executor, const BuildPlan* build, const TreeSlots& tree,
-                       const TracePlan& trace) {
+// The chain of one frame: with a builder on the device its build comes first, up to the first mark, then the
+// wide tree if it is walked, up to the second.
+struct FrameChain {
+  std::vector<Step> steps;
+  std::size_t tree_steps;
+};
+
+FrameChain frame_chain(const GpuExecutor& executor, const FramePlan& plan) {
   Chain chain = executor.chain();
-  if (build) append_build(chain, *build);
-  const std::size_t build_steps = chain.steps().size();
+  if (plan.build) append_build(chain, *plan.build);
   chain.mark();
-  append_trace(chain, tree, trace);
-  return {chain.steps(), build_steps};
+  if (plan.wide) append_wide(chain, plan.tree, *plan.wide);
+  const std::size_t tree_steps = chain.steps().size();
+  chain.mark();
+  append_trace(chain, plan.tree, plan.trace);
+  return {chain.steps(), tree_steps};
 }
 
 // A short trace through all kernels: the first use of a kernel compiles it.
-void warm_up(GpuExecutor& executor, const BuildPlan* build, const TreeSlots& tree, TracePlan trace) {
-  trace.image.count = std::min<std::uint64_t>(trace.image.count, 64);
-  trace.options.samples = 1;
-  executor.record(frame_chain(executor, build, tree, trace).steps).submit_and_wait(limit_seconds);
+void warm_up(GpuExecutor& executor, FramePlan plan) {
+  plan.trace.image.count = std::min<std::uint64_t>(plan.trace.image.count, 64);
+  plan.trace.options.samples = 1;
+  executor.record(frame_chain(executor, plan).steps).submit_and_wait(limit_seconds);
 }
 
 // One submit a frame, nothing read back in between.
-void measure_frames(GpuExecutor& executor, const FrameChain& chain, const TreeSlots& tree, bool builds,
-                    std::uint32_t runs, RenderReport& report) {
+void measure_frames(GpuExecutor& executor, const FrameChain& chain, const FramePlan& plan, std::uint32_t runs,
+                    RenderReport& report) {
   Recorder recorder = executor.record(chain.steps);
-  std::vector<double> build_ms, trace_ms, wall_ms;
+  std::vector<double> build_ms, wide_ms, trace_ms, wall_ms;
   for (std::uint32_t run = 0; run < runs; ++run) {
     const Recorder::Times times = recorder.submit_and_wait(limit_seconds);
     build_ms.push_back(times.marks_ms.at(0));
-    trace_ms.push_back(times.total_ms - times.marks_ms[0]);
+    wide_ms.push_back(times.marks_ms.at(1) - times.marks_ms[0]);
+    trace_ms.push_back(times.total_ms - times.marks_ms[1]);
     wall_ms.push_back(times.wall_ms);
-    check_state(executor, tree);
+    check_state(executor, plan.tree);
   }
   report.trace_ms = spread_of(trace_ms).median;
-  if (!builds) return;
+  if (plan.wide) report.wide_ms = spread_of(wide_ms).median;
+  if (!plan.build) return;
   report.build.build_ms = spread_of(build_ms);
   report.build.wall_ms = spread_of(wall_ms);
   report.build.runs = runs;
 }
 
+RunCounts counts_of_tree(const GpuExecutor& executor, const FramePlan& plan) {
+  const WidePlan* const wide = plan.wide ? &*plan.wide : nullptr;
+  if (plan.build) return counts_of_build(executor, *plan.build, wide);
+  RunCounts counts;
+  counts.active_count = executor.read(plan.tree.state)[0].active_count;
+  if (wide) count_wide(executor, plan.tree, *wide, counts);
+  return counts;
+}
+
 void split_kernels(CheckedDevice& device, GpuExecutor& executor, const FrameChain& chain,
-                   const BuildPlan* build, const TracePlan& trace, const Options& options,
-                   RenderReport& report) {
+                   const FramePlan& plan, const Options& options, RenderReport& report) {
   const std::span<const Step> steps = chain.steps;
-  KernelSplit build_split;
-  RunCounts build_counts;
-  if (build) {
-    build_split = split_time(executor, steps.first(chain.build_steps), limit_seconds);
-    build_counts = counts_of_build(executor, *build);
-  }
-  const KernelSplit split = split_time(executor, steps.subspan(chain.build_steps), limit_seconds);
-  const RunCounts counts = counts_of_trace(executor.read(trace.counters)[0]);
+  const KernelSplit tree_split = split_time(executor, steps.first(chain.tree_steps), limit_seconds);
+  const RunCounts tree_counts = counts_of_tree(executor, plan);
+  const KernelSplit split = split_time(executor, steps.subspan(chain.tree_steps), limit_seconds);
+  const RunCounts counts = counts_of_trace(executor.read(plan.trace.counters)[0]);
   const auto limit = find_copy_limit(
-      device.device, std::max(largest_dispatch(build_split, build_counts), largest_dispatch(split, counts)));
+      device.device, std::max(largest_dispatch(tree_split, tree_counts), largest_dispatch(split, counts)));
   report.kernels = kernel_table(split, counts, limit, report.trace_ms);
-  if (build)
-    report.build.kernels = kernel_table(build_split, build_counts, limit, report.build.build_ms.median);
+  if (plan.build || plan.wide) {
+    const double build_ms = plan.build ? report.build.build_ms.median : 0;
+    report.build.kernels = kernel_table(tree_split, tree_counts, limit, build_ms + report.wide_ms);
+  }
   if (options.trace_events.empty()) return;
   write_trace_events(options.trace_events, split_time(executor, steps, limit_seconds));
 }
@@ -106,32 +124,38 @@ RenderReport render_on_device(CheckedDevice& device, const Scene& scene, const O
   if (!builds) report.build = measure_cpu_build(arrays.triangles, report.build, options.frames, bvh);
 
   Layout layout(device.device.properties().max_block_bytes);
-  std::optional<BuildPlan> build;
+  FramePlan plan;
   if (builds)
-    build = plan_build(layout, triangle_count, device.build_options(options, report.build.morton_bits));
-  const TreeSlots tree = builds ? *build : plan_tree(layout, triangle_count, bvh.nodes.size());
+    plan.build = plan_build(layout, triangle_count, device.build_options(options, report.build.morton_bits));
+  plan.tree = builds ? *plan.build : plan_tree(layout, triangle_count, bvh.nodes.size());
   TraceOptions trace_options = device.trace_options(options);
   trace_options.directional_light = scene.light.radiance != vec3(0);
-  const TracePlan trace =
-      plan_trace(layout, tree, static_cast<std::uint32_t>(arrays.materials.size()), trace_options);
+  trace_options.wide = report.walks_wide = device.walks_wide(options, triangle_count);
+  if (trace_options.wide && builds) {
+    plan.wide = plan_wide(layout, *plan.build, &*plan.build);
+    plan.tree = *plan.build;
+  } else if (trace_options.wide) {
+    plan.wide = plan_wide(layout, plan.tree);
+  }
+  plan.trace =
+      plan_trace(layout, plan.tree, static_cast<std::uint32_t>(arrays.materials.size()), trace_options);
   GpuExecutor executor(device.device, layout);
-  upload_frame(executor, tree, trace, arrays,
+  upload_frame(executor, plan.tree, plan.trace, arrays,
                make_film(scene, options.camera, options.width, options.height, options.samples));
-  if (!builds) upload_tree(executor, tree, bvh);
+  if (!builds) upload_tree(executor, plan.tree, bvh);
 
-  const BuildPlan* const device_build = builds ? &*build : nullptr;
-  warm_up(executor, device_build, tree, trace);
-  const FrameChain chain = frame_chain(executor, device_build, tree, trace);
-  measure_frames(executor, chain, tree, builds, options.frames, report);
-  const RunCounts counts = counts_of_trace(executor.read(trace.counters)[0]);
+  warm_up(executor, plan);
+  const FrameChain chain = frame_chain(executor, plan);
+  measure_frames(executor, chain, plan, options.frames, report);
+  const RunCounts counts = counts_of_trace(executor.read(plan.trace.counters)[0]);
   report.rays = counts.rays;
   report.hits = counts.hits;
   report.steps = counts.steps;
-  report.image = executor.read(trace.image);
+  report.image = executor.read(plan.trace.image);
   for (const std::uint64_t bytes : layout.block_bytes()) report.build.device_bytes += bytes;
-  if (builds) describe_build(device, executor, *build, report.build);
+  if (builds) describe_build(device, executor, *plan.build, report.build);
   if (options.kernels || !options.json.empty() || !options.trace_events.empty()) {
-    split_kernels(device, executor, chain, device_build, trace, options, report);
+    split_kernels(device, executor, chain, plan, options, report);
   }
   return report;
 }

@@ -68,6 +68,15 @@ Json to_json(const BuildReport& report) {
   json["references"] = report.quality.references;
   if (report.reference_cap_reached) json["reference_cap_reached"] = true;
   json["tree_hash"] = hex16(report.tree_hash);
+  if (report.wide.nodes > 0) {
+    json["wide"] = {{"ms", report.wide_ms.median},
+                    {"ms_min", report.wide_ms.least},
+                    {"ms_max", report.wide_ms.greatest},
+                    {"nodes", report.wide.nodes},
+                    {"children_per_node", report.wide.children_per_node()},
+                    {"levels", report.wide.levels},
+                    {"sah", report.wide.sah}};
+  }
   return json;
 }
 
@@ -84,6 +93,13 @@ void print_build(const BuildReport& report) {
   std::printf("\n  tree %s: %llu nodes, depth %u, SAH cost %.3f%s\n", hex16(report.tree_hash).c_str(),
               static_cast<unsigned long long>(report.quality.nodes), report.quality.depth, report.quality.sah,
               report.reference_cap_reached ? ", cap on references reached" : "");
+  if (report.wide.nodes == 0) return;
+  std::printf("  wide %.3f ms (%.3f to %.3f), %.1f %% of the build\n", report.wide_ms.median,
+              report.wide_ms.least, report.wide_ms.greatest,
+              100 * report.wide_ms.median / report.build_ms.median);
+  std::printf("  wide tree: %llu nodes, %.2f children each, %u levels, SAH cost %.3f\n",
+              static_cast<unsigned long long>(report.wide.nodes), report.wide.children_per_node(),
+              report.wide.levels, report.wide.sah);
 }
 
 void write_json(const std::string& path, const Json& json) {

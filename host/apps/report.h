@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "analysis/quality.h"
+#include "analysis/wide_tree.h"
 #include "apps/kernel_times.h"
 #include "apps/options.h"
 #include "apps/ploc_rounds.h"
@@ -30,6 +31,8 @@ struct BuildReport {
   std::uint64_t tree_hash = 0;
   std::uint64_t device_bytes = 0;
   bool reference_cap_reached = false;  // spatial splits ran out of references
+  Spread wide_ms{};                    // of the conversion to wide nodes, by itself
+  WideQuality wide{};                  // no nodes: no conversion
 };
 Json to_json(const BuildReport& report);
 void print_build(const BuildReport& report);

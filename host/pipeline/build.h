@@ -7,6 +7,7 @@
 
 #include "interface/ploc.h"
 #include "interface/types.h"
+#include "interface/wide.h"
 #include "stages/chain.h"
 #include "stages/layout.h"
 
@@ -45,6 +46,10 @@ struct TreeSlots {
   Slot<Triangle> triangles;
   Slot<Node> nodes;        // root at 0; of a build on the device the first 2 active - 1
   Slot<BuildState> state;  // active_count is 0 without a tree
+
+  // The same tree with wide nodes in depth-first order, root at 0. Empty slots where none is planned.
+  Slot<WideNode> wide_nodes;     // wide_counts[0].node_count of them
+  Slot<WideCounts> wide_counts;  // node_count is 0 without a tree
 };
 
 // Where a build keeps what. A pure function of the number of triangles and the options.

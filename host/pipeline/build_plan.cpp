@@ -61,8 +61,12 @@ std::uint32_t ploc_rounds_bound(std::uint32_t clusters, std::uint32_t target) {
 }
 
 TreeSlots plan_tree(Layout& layout, std::uint32_t triangle_count, std::uint64_t node_count) {
-  return {triangle_count, layout.add<Triangle>("triangles", triangle_count),
-          layout.add<Node>("nodes", node_count), layout.add<BuildState>("state", 1)};
+  TreeSlots tree;
+  tree.triangle_count = triangle_count;
+  tree.triangles = layout.add<Triangle>("triangles", triangle_count);
+  tree.nodes = layout.add<Node>("nodes", node_count);
+  tree.state = layout.add<BuildState>("state", 1);
+  return tree;
 }
 
 BuildPlan plan_build(Layout& layout, std::uint32_t triangle_count, const BuildOptions& options) {

@@ -11,9 +11,10 @@ constexpr double limit_seconds = 600;
 }  // namespace
 
 RayTracing::Slots RayTracing::plan(Layout& layout, std::size_t nodes, std::size_t triangles,
-                                   std::uint32_t most_rays) {
+                                   std::uint32_t most_rays, bool wide) {
   Slots slots;
   slots.tree = plan_tree(layout, static_cast<std::uint32_t>(triangles), nodes);
+  if (wide) slots.wide = plan_wide(layout, slots.tree);
   for (RaySlots* const rays : {&slots.rays, &slots.bounced}) {
     const std::string prefix = rays == &slots.rays ? "" : "bounced_";
     rays->rays = layout.add<Ray>(prefix + "rays", most_rays);
@@ -24,9 +25,9 @@ RayTracing::Slots RayTracing::plan(Layout& layout, std::size_t nodes, std::size_
 }
 
 RayTracing::RayTracing(Device& device, std::span<const Node> nodes, std::span<const Triangle> triangles,
-                       std::uint32_t most_rays)
+                       std::uint32_t most_rays, bool wide)
     : layout_(device.properties().max_block_bytes),
-      slots_(plan(layout_, nodes.size(), triangles.size(), most_rays)),
+      slots_(plan(layout_, nodes.size(), triangles.size(), most_rays, wide)),
       gpu_(device, layout_),
       cpu_(layout_) {
   state_.active_count = static_cast<uint>((nodes.size() + 1) / 2);
@@ -34,6 +35,18 @@ RayTracing::RayTracing(Device& device, std::span<const Node> nodes, std::span<co
   cpu_.upload(slots_.tree.nodes, nodes);
   gpu_.upload(slots_.tree.triangles, triangles);
   cpu_.upload(slots_.tree.triangles, triangles);
+  if (slots_.wide) convert();
+}
+
+void RayTracing::convert() {
+  const std::span<const BuildState> state(&state_, 1);
+  Chain on_device = gpu_.chain(), by_twins = cpu_.chain();
+  gpu_.upload(slots_.tree.state, state);
+  append_wide(on_device, slots_.tree, *slots_.wide);
+  gpu_.record(on_device.steps()).submit_and_wait(limit_seconds);
+  cpu_.upload(slots_.tree.state, state);
+  append_wide(by_twins, slots_.tree, *slots_.wide);
+  cpu_.run(by_twins.steps());
 }
 
 template <class Executor>

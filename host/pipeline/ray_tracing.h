@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "pipeline/trace.h"
+#include "pipeline/wide.h"
 #include "stages/cpu_executor.h"
 #include "stages/gpu_executor.h"
 
@@ -19,10 +21,10 @@ struct TracedRays {
 // Traces given rays through a tree that the host has, on the device and by the twins.
 class RayTracing {
  public:
-  // The tree is uploaded once; `nodes` may be empty for brute force. Throws DeviceError if it does not fit,
-  // LayoutError if a slot is too large.
+  // The tree is uploaded once, and with `wide` converted once, for options with a wide tree; `nodes` may be
+  // empty for brute force. Throws DeviceError if it does not fit, LayoutError if a slot is too large.
   RayTracing(Device& device, std::span<const Node> nodes, std::span<const Triangle> triangles,
-             std::uint32_t most_rays);
+             std::uint32_t most_rays, bool wide = false);
 
   TracedRays on_device(std::span<const Ray> rays, const TraceOptions& options);
   TracedRays by_twins(std::span<const Ray> rays, const TraceOptions& options);
@@ -33,9 +35,12 @@ class RayTracing {
  private:
   struct Slots {
     TreeSlots tree;
+    std::optional<WidePlan> wide;
     RaySlots rays, bounced;
   };
-  static Slots plan(Layout& layout, std::size_t nodes, std::size_t triangles, std::uint32_t most_rays);
+  static Slots plan(Layout& layout, std::size_t nodes, std::size_t triangles, std::uint32_t most_rays,
+                    bool wide);
+  void convert();
   template <class Executor>
   void upload_rays(Executor& executor, std::span<const Ray> rays) const;
   Chain closest_hits(Chain chain, std::size_t ray_count, const TraceOptions& options) const;

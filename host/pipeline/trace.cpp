@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "stages/stages.h"
 
@@ -11,7 +12,7 @@ namespace coppice {
 
 namespace {
 
-constexpr std::uint32_t max_band_pixels = 1u << 20;
+constexpr std::uint32_t max_band_rays = 1u << 20;
 
 uvec3 groups_of(std::uint32_t count, std::uint32_t group) { return {(count + group - 1) / group, 1, 1}; }
 
@@ -24,6 +25,15 @@ void append_closest_hits(Chain& chain, const TreeSlots& tree, const RaySlots& sl
   const auto rays = chain.at(slots.rays);
   const auto hits = chain.at(slots.hits);
   const auto counters = chain.at(slots.counters);
+  if (options.wide) {
+    if (options.triangle_test != TRIANGLE_WATERTIGHT || options.box_test != BOX_ROBUST)
+      throw std::invalid_argument("the wide tree is traced with the watertight and the robust test");
+    chain.run(stages::trace_wide,
+              {chain.at(tree.wide_nodes), chain.at(tree.wide_counts), chain.at(tree.nodes), triangles, rays,
+               hits, counters, chain.at(tree.state), ray_count, 0},
+              groups_of(ray_count, TRACE_PACKET), {options.max_turns});
+    return;
+  }
   if (!options.brute_force) {
     chain.run(stages::trace_closest,
               {chain.at(tree.nodes), triangles, rays, hits, counters, chain.at(tree.state), ray_count,
@@ -68,7 +78,7 @@ TracePlan plan_trace(Layout& layout, const TreeSlots& tree, std::uint32_t materi
   TracePlan plan;
   plan.options = options;
   const std::uint32_t pixels = options.width * options.height;
-  plan.band_pixels = std::min(pixels, max_band_pixels);
+  plan.band_rays = std::min(pixels, max_band_rays);
   plan.material_index = layout.add<uint>("material_index", tree.triangle_count);
   plan.materials = layout.add<SurfaceMaterial>("materials", material_count);
   plan.film = layout.add<Film>("film", 1);
@@ -76,9 +86,9 @@ TracePlan plan_trace(Layout& layout, const TreeSlots& tree, std::uint32_t materi
   plan.srgb_thresholds = layout.add<uint>("srgb_thresholds", 256);
   plan.image = layout.add<uint>("image", pixels);
   plan.counters = layout.add<TraceCounters>("counters", 1);
-  plan.rays = layout.add<Ray>("rays", plan.band_pixels);
-  plan.hits = layout.add<Hit>("hits", plan.band_pixels);
-  plan.radiance = layout.add<vec3>("radiance", plan.band_pixels);
+  plan.rays = layout.add<Ray>("rays", plan.band_rays);
+  plan.hits = layout.add<Hit>("hits", plan.band_rays);
+  plan.radiance = layout.add<vec3>("radiance", plan.band_rays);
   return plan;
 }
 
@@ -88,8 +98,8 @@ void append_trace(Chain& chain, const TreeSlots& tree, const TracePlan& plan) {
   const auto hits = chain.at(plan.hits);
   const auto radiance = chain.at(plan.radiance);
   const auto pixels = static_cast<std::uint32_t>(plan.image.count);
-  for (std::uint32_t first = 0; first < pixels; first += plan.band_pixels) {
-    const std::uint32_t count = std::min(plan.band_pixels, pixels - first);
+  for (std::uint32_t first = 0; first < pixels; first += plan.band_rays) {
+    const std::uint32_t count = std::min(plan.band_rays, pixels - first);
     for (std::uint32_t sample = 0; sample < plan.options.samples; ++sample) {
       chain.run(stages::camera_rays, {chain.at(plan.film), rays, hits, first, count, sample, 0},
                 groups_of(count, CAMERA_RAYS_GROUP));
@@ -99,10 +109,10 @@ void append_trace(Chain& chain, const TreeSlots& tree, const TracePlan& plan) {
                  chain.at(plan.lighting), rays, hits, radiance, count, sample},
                 groups_of(count, SHADE_GROUP), {plan.options.directional_light});
     }
-    chain.run(stages::resolve,
-              {radiance, chain.at(plan.srgb_thresholds), chain.at(plan.image), first, count,
-               plan.options.samples, 0},
-              groups_of(count, RESOLVE_GROUP));
+    chain.run(
+        stages::resolve,
+        {chain.at(plan.film), radiance, chain.at(plan.srgb_thresholds), chain.at(plan.image), first, count},
+        groups_of(count, RESOLVE_GROUP));
   }
 }
 

@@ -20,6 +20,7 @@ struct TraceOptions {
   std::uint32_t stack_entries = TRACE_STACK_LIMIT;
   std::uint32_t triangle_test = TRIANGLE_WATERTIGHT;
   std::uint32_t box_test = BOX_ROBUST;
+  bool wide = false;              // walk the wide tree, in packets; needs its slots, watertight and robust
   bool directional_light = true;  // what the scene calls for
 };
 
@@ -33,7 +34,7 @@ struct RaySlots {
 // Where a trace of a picture keeps what, beside the tree it walks.
 struct TracePlan : RaySlots {
   TraceOptions options;
-  std::uint32_t band_pixels;  // the image is traced in bands of at most so many pixels
+  std::uint32_t band_rays;  // the image is traced in bands of at most so many rays
 
   Slot<uint> material_index;        // in: one a triangle
   Slot<SurfaceMaterial> materials;  // in
@@ -42,7 +43,7 @@ struct TracePlan : RaySlots {
   Slot<uint> srgb_thresholds;       // in: see srgb_thresholds()
   Slot<uint> image;                 // out: RGBA8, red in the low byte, rows top to bottom
 
-  Slot<vec3> radiance;
+  Slot<vec3> radiance;  // one a ray, in the order of FILM_STRIP
 };
 
 // Throws LayoutError if a slot does not fit a block.
@@ -50,7 +51,7 @@ TracePlan plan_trace(Layout& layout, const TreeSlots& tree, std::uint32_t materi
                      const TraceOptions& options);
 
 // The closest hits of the first `ray_count` rays, improved in place. Of the options the size of the picture,
-// the samples and the light do not matter.
+// the samples and the light do not matter. Throws std::invalid_argument for a wide tree with another test.
 void append_closest_hits(Chain& chain, const TreeSlots& tree, const RaySlots& slots, std::uint32_t ray_count,
                          const TraceOptions& options);
 

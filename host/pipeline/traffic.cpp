@@ -85,6 +85,33 @@ std::optional<Bytes> ploc_bytes(const Step& step, const RunCounts& counts) {
   return std::nullopt;
 }
 
+// New wide nodes. Together they open every internal binary node once, and read the two nodes below it.
+Bytes collapse_bytes(Bytes nodes, const RunCounts& counts) {
+  if (counts.wide_nodes == 0) return 0;
+  const Bytes opened = (Bytes{counts.active_count} - 1) * nodes / counts.wide_nodes;
+  return nodes * (WIDE_CHILDREN * 4 + sizeof(WideEntry) + 4) + opened * 2 * sizeof(Node);
+}
+
+std::optional<Bytes> wide_bytes(const Step& step, const RunCounts& counts) {
+  const Bytes nodes = counts.wide_nodes;
+  const auto level = [&](std::uint32_t index) {
+    return index < counts.wide_levels.size() ? Bytes{counts.wide_levels[index].count} : 0;
+  };
+  if (step.stage == &stages::wide_root) return collapse_bytes(level(0), counts);
+  if (const auto* a = args_of(step, stages::wide_collapse))
+    return level(a->level) * (WIDE_CHILDREN * 4 + sizeof(WideEntry)) +
+           collapse_bytes(level(a->level + 1), counts);
+  if (step.stage == &stages::wide_sizes) return nodes * (sizeof(WideEntry) + 2 * 4 + 4);
+  if (step.stage == &stages::wide_quantise) {
+    if (nodes == 0) return 0;
+    const Bytes children =
+        counts.active_count + nodes - 1;  // each leaf and each wide node but the root is one
+    return nodes * (sizeof(WideEntry) + 2 * 4 + WIDE_CHILDREN * 4 + sizeof(WideNode)) +
+           (children + nodes) * sizeof(Node);
+  }
+  return std::nullopt;
+}
+
 // Of a sum over the whole trace, the part that `rays` of its rays have.
 Bytes share(Bytes sum, Bytes rays, const RunCounts& counts) {
   if (counts.rays == 0) return 0;
@@ -107,13 +134,17 @@ std::optional<Bytes> trace_bytes(const Step& step, const RunCounts& counts) {
     const Bytes walked = counts.steps * 2 * sizeof(Node) + counts.hits * sizeof(Triangle);
     return a->ray_count * ray_and_hit + share(walked, a->ray_count, counts);
   }
+  if (const auto* a = args_of(step, stages::trace_wide)) {
+    const Bytes walked = counts.steps / TRACE_PACKET * sizeof(WideNode) + counts.hits * sizeof(Triangle);
+    return a->ray_count * ray_and_hit + share(walked, a->ray_count, counts);
+  }
   if (const auto* a = args_of(step, stages::trace_brute_force))
     return a->ray_count * ray_and_hit + a->triangle_count * sizeof(Triangle);
   if (const auto* a = args_of(step, stages::bounce_rays))
     return a->ray_count * (2 * (sizeof(Ray) + sizeof(Hit))) +
            share(counts.hits, a->ray_count, counts) * sizeof(Triangle);
   if (const auto* a = args_of(step, stages::shade)) return shade_bytes(*a, counts);
-  if (const auto* a = args_of(step, stages::resolve)) return Bytes{a->pixel_count} * (sizeof(vec3) + 4);
+  if (const auto* a = args_of(step, stages::resolve)) return Bytes{a->ray_count} * (sizeof(vec3) + 4);
   return std::nullopt;
 }
 
@@ -140,6 +171,7 @@ std::optional<std::uint64_t> modelled_bytes(const Step& step, const RunCounts& c
     return Bytes{a->triangle_count} * (sizeof(Aabb) + 4 * a->key_words + 4);
   std::optional<Bytes> bytes = sort_bytes(step);
   if (!bytes) bytes = ploc_bytes(step, counts);
+  if (!bytes) bytes = wide_bytes(step, counts);
   if (!bytes) bytes = trace_bytes(step, counts);
   return bytes;
 }

@@ -6,6 +6,7 @@
 
 #include "interface/ploc.h"
 #include "interface/trace.h"
+#include "interface/wide.h"
 #include "stages/chain.h"
 
 namespace coppice {
@@ -14,6 +15,8 @@ namespace coppice {
 struct RunCounts {
   std::uint32_t active_count = 0;  // triangles in the tree
   std::vector<PlocRound> rounds;   // every entered round, the last with one cluster; empty: no build
+  std::uint32_t wide_nodes = 0;
+  std::vector<WideLevel> wide_levels;           // all of them; behind them none or empty ones
   std::uint64_t rays = 0, hits = 0, steps = 0;  // of the whole trace
 };
 

@@ -8,6 +8,7 @@
 #include "interface/scan.h"
 #include "interface/sort.h"
 #include "interface/trace.h"
+#include "interface/wide.h"
 #include "stages/stage.h"
 
 // THE TABLE. A line here, a kernel kernels/<stem>.comp and a twin host/twins/<stem>.cpp make a stage.
@@ -26,8 +27,13 @@
   STAGE(ploc_merge, PlocMergeArgs)              \
   STAGE(ploc_finish, PlocFinishArgs)            \
   STAGE(hploc_build, HplocBuildArgs)            \
+  STAGE(wide_root, WideCollapseArgs)            \
+  STAGE(wide_collapse, WideCollapseArgs)        \
+  STAGE(wide_sizes, WideSizesArgs)              \
+  STAGE(wide_quantise, WideQuantiseArgs)        \
   STAGE(camera_rays, CameraRaysArgs)            \
   STAGE(trace_closest, TraceClosestArgs)        \
+  STAGE(trace_wide, TraceWideArgs)              \
   STAGE(trace_brute_force, TraceBruteForceArgs) \
   STAGE(bounce_rays, BounceRaysArgs)            \
   STAGE(shade, ShadeArgs)                       \

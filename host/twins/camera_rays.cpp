@@ -1,6 +1,7 @@
 #include <limits>
 
 #include "interface/trace.h"
+#include "twins/film_pixel.h"
 
 namespace coppice::twins {
 
@@ -21,9 +22,9 @@ void camera_rays(const CameraRaysArgs& args) {
   const float across = (static_cast<float>(args.sample_index) + 0.5f) / static_cast<float>(film.samples);
   const float down = film.samples == 1 ? 0.5f : radical_inverse(args.sample_index);
   for (uint i = 0; i < args.ray_count; ++i) {
-    const uint pixel = args.first_pixel + i;
-    const float x = static_cast<float>(pixel % film.width) + across;
-    const float y = static_cast<float>(pixel / film.width) + down;
+    const uvec2 pixel = film_pixel(args.first_ray + i, film);
+    const float x = static_cast<float>(pixel.x) + across;
+    const float y = static_cast<float>(pixel.y) + down;
     const vec3 direction = film.corner + film.right * x + film.down * y;
     args.rays[i] = {film.position, 0.0f, direction, infinity};
     args.hits[i] = {infinity, NO_TRIANGLE, 0.0f, 0.0f};

@@ -16,12 +16,25 @@ float from_ordered(uint key) {
   return std::bit_cast<float>(bits < 0 ? bits ^ INT32_MIN : ~bits);
 }
 
-Normalisation::Normalisation(const BuildState& state) : scene_box_{vec3(0), vec3(0)}, exponent_(0) {
-  if (state.active_count == 0) return;
+namespace {
+
+Aabb box_of(const BuildState& state) {
+  Aabb box{vec3(0), vec3(0)};
+  if (state.active_count == 0) return box;
+  for (int axis = 0; axis < 3; ++axis) {
+    box.box_min[axis] = from_ordered(~state.box_min_complement[axis]);
+    box.box_max[axis] = from_ordered(state.box_max[axis]);
+  }
+  return box;
+}
+
+}  // namespace
+
+Normalisation::Normalisation(const BuildState& state) : Normalisation(box_of(state)) {}
+
+Normalisation::Normalisation(const Aabb& scene_box) : scene_box_(scene_box), exponent_(0) {
   float largest = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    scene_box_.box_min[axis] = from_ordered(~state.box_min_complement[axis]);
-    scene_box_.box_max[axis] = from_ordered(state.box_max[axis]);
     largest = std::max({largest, std::fabs(scene_box_.box_min[axis]), std::fabs(scene_box_.box_max[axis])});
   }
   exponent_ = largest > 0 ? 59 - std::ilogb(largest) : 0;

@@ -12,6 +12,7 @@ float from_ordered(uint key);
 class Normalisation {
  public:
   explicit Normalisation(const BuildState& state);
+  explicit Normalisation(const Aabb& scene_box);
   vec3 operator()(vec3 position) const;
   Aabb scene_box() const { return scene_box_; }
 

@@ -1,10 +1,11 @@
 #ifndef COPPICE_INTERFACE_TRACE_H
 #define COPPICE_INTERFACE_TRACE_H
-#include "types.h"
+#include "wide.h"
 INTERFACE_BEGIN
 
 const uint CAMERA_RAYS_GROUP = 64;
 const uint TRACE_GROUP = 64;
+const uint TRACE_PACKET = 64;  // rays that trace_wide takes through the tree together
 const uint BOUNCE_RAYS_GROUP = 64;
 const uint SHADE_GROUP = 64;
 const uint RESOLVE_GROUP = 64;
@@ -36,6 +37,10 @@ struct Hit {
   float u, v;     // barycentric coordinates of corners b and c
 };
 
+// Rays of a picture come in strips of so many rows (the last may have fewer), from left to right, in each
+// column of a strip from top to bottom: 64 rays that follow each other are a square of pixels.
+const uint FILM_STRIP = 8;
+
 // Pinhole camera: a ray through film coordinates (x, y) in [0, width) x [0, height) has the direction
 // corner + x * right + y * down.
 struct Film {
@@ -64,7 +69,8 @@ struct Lighting {
   float padding2;
 };
 
-// Counted on the device; 64-bit sums as (low, high) words.
+// Counted on the device; 64-bit sums as (low, high) words. Steps are pairs of binary nodes that rays visit,
+// or wide nodes that their packets visit.
 struct TraceCounters {
   uvec2 rays, hits, steps;
   uint padding0, padding1;
@@ -82,7 +88,7 @@ struct CameraRaysArgs {
   FilmBuffer film;
   RayBuffer rays;  // ray_count
   HitBuffer hits;  // ray_count, set to misses
-  uint first_pixel;
+  uint first_ray;  // of the picture
   uint ray_count;
   uint sample_index;
   uint padding;
@@ -99,6 +105,20 @@ struct TraceClosestArgs {
   uint stack_entries;  // a tree of greater height is refused (ERROR_TREE_TOO_DEEP)
   uint triangle_test;  // TRIANGLE_
   uint box_test;       // BOX_
+};
+
+// Watertight and robust; the hits of these tests do not depend on the order of traversal.
+struct TraceWideArgs {
+  WideNodeBuffer wide_nodes;
+  WideCountsBuffer wide_counts;  // no nodes: nothing is hit
+  NodeBuffer nodes;              // the binary tree; only its root's box is read
+  TriangleBuffer triangles;
+  RayBuffer rays;
+  HitBuffer hits;  // read and improved
+  TraceCountersBuffer counters;
+  BuildStateBuffer state;
+  uint ray_count;
+  uint padding;
 };
 
 struct TraceBruteForceArgs {
@@ -137,13 +157,12 @@ struct ShadeArgs {
 };
 
 struct ResolveArgs {
-  Vec3Buffer radiance;
+  FilmBuffer film;
+  Vec3Buffer radiance;         // one a ray
   UintBuffer srgb_thresholds;  // 256 floats as bits: the least linear value of each 8-bit sRGB code
-  UintBuffer image;            // RGBA8, red in the low byte
-  uint first_pixel;
-  uint pixel_count;
-  uint samples;
-  uint padding;
+  UintBuffer image;            // RGBA8, red in the low byte, rows top to bottom
+  uint first_ray;
+  uint ray_count;
 };
 
 INTERFACE_END

@@ -101,6 +101,7 @@ const uint ERROR_PLOC_ROUNDS = 4u;
 const uint ERROR_TREE_TOO_DEEP = 8u;
 const uint ERROR_TRACE_STEPS = 16u;
 const uint ERROR_SCAN_LOOKBACK = 32u;
+const uint ERROR_WIDE_TOO_DEEP = 64u;
 
 // What the build knows of itself. Zero at the start of a build.
 struct BuildState {

@@ -19,13 +19,6 @@ shared uvec2 pair_slots[HPLOC_CLUSTERS];
 uint lane() { return gl_SubgroupInvocationID; }
 uint lanes() { return gl_SubgroupSize; }
 
-// All reads of the subgroup behind see all writes to shared memory before. A barrier costs CPU devices as much as twenty
-// loads.
-void sync() {
-  if (LANES_IN_STEP) memoryBarrierShared();
-  else subgroupBarrier();
-}
-
 // Merges the clusters of a pair of slots, but only one word of their nodes: all words of all pairs are done at once.
 void join_word(uvec2 pair, uint word) {
   uint left = cluster_words[pair.x * NODE_WORDS + word], right = cluster_words[pair.y * NODE_WORDS + word];

@@ -1,5 +1,6 @@
 // Ray and triangle, from both sides. Of equally close triangles the smallest index wins, whatever the order of tests.
 #include "lib/exact_vector.glsl"
+#include "lib/selected.glsl"
 
 void keep_closer(TraceRay ray, float t, uint index, float u, float v, inout Hit hit) {
   if (!(t >= ray.t_min && t <= hit.t) || (t == hit.t && index >= hit.triangle)) return;
@@ -25,7 +26,7 @@ void intersect_fast(TraceRay ray, Triangle triangle, uint index, inout Hit hit) 
 }
 
 bool are_mixed(vec3 signs) {
-  return min(min(signs.x, signs.y), signs.z) < 0.0 && max(max(signs.x, signs.y), signs.z) > 0.0;
+  return lesser(lesser(signs.x, signs.y), signs.z) < 0.0 && greater(greater(signs.x, signs.y), signs.z) > 0.0;
 }
 
 const float WATERTIGHT_SLIVER = 0.00390625;  // 2^-8, of a triangle of size 1 to 2
@@ -41,8 +42,8 @@ void intersect_watertight(TraceRay ray, Triangle triangle, uint index, inout Hit
   precise vec2 a_sheared = a.xy - ray.shear.xy * a.z;
   precise vec2 b_sheared = b.xy - ray.shear.xy * b.z;
   precise vec2 c_sheared = c.xy - ray.shear.xy * c.z;
-  vec2 sizes = max(max(abs(a_sheared), abs(b_sheared)), abs(c_sheared));
-  float size = max(sizes.x, sizes.y);
+  vec2 sizes = greater(greater(abs(a_sheared), abs(b_sheared)), abs(c_sheared));
+  float size = greater(sizes.x, sizes.y);
   if (!(size > 0.0) || isinf(size)) return;
   float scale = uintBitsToFloat(max(254u - (floatBitsToUint(size) >> 23), 1u) << 23);
   precise vec2 p = a_sheared * scale, q = b_sheared * scale, r = c_sheared * scale;

@@ -16,11 +16,15 @@ vec3 scene_box_max(BuildState state) { return from_ordered(state.box_max); }
 float power_of_two(int exponent) { return uintBitsToFloat(uint(exponent + 127) << 23); }
 int biased_exponent(float x) { return int((floatBitsToUint(x) >> 23) & 0xffu); }
 
-Normalisation scene_normalisation(BuildState state) {
-  vec3 largest = max(abs(scene_box_min(state)), abs(scene_box_max(state)));
+Normalisation normalisation_of(vec3 box_min, vec3 box_max) {
+  vec3 largest = max(abs(box_min), abs(box_max));
   int exponent = 186 - biased_exponent(max(max(largest.x, largest.y), largest.z));
   int half_exponent = exponent >> 1;
   return Normalisation(power_of_two(half_exponent), power_of_two(exponent - half_exponent));
+}
+
+Normalisation scene_normalisation(BuildState state) {
+  return normalisation_of(scene_box_min(state), scene_box_max(state));
 }
 
 vec3 normalised(vec3 position, Normalisation normalisation) {

@@ -1,0 +1,106 @@
+#include "pipeline/wide.h"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "stages/stages.h"
+
+namespace coppice {
+
+namespace {
+
+std::uint32_t divide_up(std::uint32_t a, std::uint32_t b) { return a / b + (a % b != 0); }
+
+// Levels below the first: above a node of level k there are k nodes of eight children, one of them on its
+// way.
+std::uint32_t bound_levels(std::uint32_t leaves) {
+  if (leaves < 2) return leaves;
+  return std::min(WIDE_MAX_HEIGHT, (leaves - 2) / (WIDE_CHILDREN - 1) + 1);
+}
+
+// A slot in the place of another, `first_byte` bytes behind its beginning.
+template <class T, class Old>
+Slot<T> instead_of(const Slot<Old>& old, std::uint64_t first_byte, std::uint64_t count) {
+  if (first_byte + count * sizeof(T) > old.bytes())
+    throw LayoutError("no room for the scratch of wide nodes");
+  return {{old.place.block, old.place.offset + first_byte}, count};
+}
+
+void add_scratch(Layout& layout, WidePlan& plan, std::uint32_t bound, const BuildPlan* finished) {
+  const std::uint64_t children = std::uint64_t{bound} * WIDE_CHILDREN;
+  if (finished) {
+    const std::uint64_t entries_bytes = std::uint64_t{bound} * sizeof(WideEntry),
+                        column = std::uint64_t{bound} * 4;
+    plan.children = instead_of<uint>(finished->clusters[0], 0, children);
+    plan.entries = instead_of<WideEntry>(finished->boxes, 0, bound);
+    plan.sizes = instead_of<uint>(finished->boxes, entries_bytes, bound);
+    plan.offsets = instead_of<uint>(finished->boxes, entries_bytes + column, bound);
+    return;
+  }
+  plan.children = layout.add<uint>("wide_children", children);
+  plan.entries = layout.add<WideEntry>("wide_entries", bound);
+  plan.sizes = layout.add<uint>("wide_sizes", bound);
+  plan.offsets = layout.add<uint>("wide_offsets", bound);
+}
+
+}  // namespace
+
+std::uint32_t wide_nodes_bound(std::uint32_t leaves) {
+  if (leaves < 2) return leaves;
+  return static_cast<std::uint32_t>((4 * std::uint64_t{leaves} - 1) / 7);
+}
+
+WidePlan plan_wide(Layout& layout, TreeSlots& tree, const BuildPlan* finished) {
+  WidePlan plan;
+  const auto leaves = static_cast<std::uint32_t>((tree.nodes.count + 1) / 2);
+  const std::uint32_t bound = wide_nodes_bound(leaves);
+  plan.levels_bound = bound_levels(leaves);
+  plan.levels = layout.add<WideLevel>("wide_levels", plan.levels_bound + 1);
+  // Each level begins a tile and a block of its own.
+  plan.tile_sums = layout.add<uint>("wide_tile_sums", divide_up(bound, WIDE_TILE) + plan.levels_bound);
+  plan.block_sums =
+      layout.add<uint>("wide_block_sums", divide_up(bound, WIDE_TILE * WIDE_BLOCK) + plan.levels_bound);
+  add_scratch(layout, plan, bound, finished);
+  tree.wide_nodes = layout.add<WideNode>("wide_nodes", bound);
+  tree.wide_counts = layout.add<WideCounts>("wide_counts", 1);
+  return plan;
+}
+
+void append_wide(Chain& chain, const TreeSlots& tree, const WidePlan& plan) {
+  chain.clear(tree.wide_counts);
+  chain.clear(plan.levels);
+  chain.clear(plan.tile_sums);
+  chain.clear(plan.block_sums);
+  if (plan.levels_bound == 0) return;
+  WideCollapseArgs collapse{chain.at(tree.nodes),
+                            chain.at(plan.entries),
+                            chain.at(plan.children),
+                            chain.at(plan.sizes),
+                            chain.at(plan.tile_sums),
+                            chain.at(plan.block_sums),
+                            chain.at(plan.levels),
+                            chain.at(tree.wide_counts),
+                            chain.at(tree.state),
+                            0,
+                            0};
+  chain.run(stages::wide_root, collapse, {1, 1, 1});
+  for (; collapse.level < plan.levels_bound; ++collapse.level) {
+    const std::uint64_t level = collapse.level * sizeof(WideLevel);
+    chain.run_indirect(
+        stages::wide_collapse, collapse,
+        {plan.levels.place.block, plan.levels.place.offset + level + offsetof(WideLevel, groups)});
+  }
+  const Place groups{tree.wide_counts.place.block,
+                     tree.wide_counts.place.offset + offsetof(WideCounts, groups)};
+  chain.run_indirect(
+      stages::wide_sizes,
+      {chain.at(plan.entries), chain.at(plan.sizes), chain.at(plan.offsets), chain.at(tree.wide_counts)},
+      groups);
+  chain.run_indirect(
+      stages::wide_quantise,
+      {chain.at(tree.nodes), chain.at(plan.entries), chain.at(plan.children), chain.at(plan.sizes),
+       chain.at(plan.offsets), chain.at(tree.wide_counts), chain.at(tree.wide_nodes)},
+      groups);
+}
+
+}  // namespace coppice

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "pipeline/build.h"
+
+namespace coppice {
+
+// Where a conversion of a tree to wide nodes keeps what, beside the tree.
+struct WidePlan {
+  std::uint32_t levels_bound = 0;  // levels that any tree of this size, of a height that is taken, may have
+
+  Slot<WideLevel> levels;
+  Slot<uint> tile_sums, block_sums;
+
+  // Scratch, a part each for every wide node.
+  Slot<uint> children;
+  Slot<WideEntry> entries;
+  Slot<uint> sizes, offsets;
+};
+
+// The most wide nodes of a tree of `leaves` leaves; proved in docs/numerics.md.
+std::uint32_t wide_nodes_bound(std::uint32_t leaves);
+
+// Adds the wide nodes to the tree's slots, which may be those of an uploaded tree. Where a build on the
+// device has left the tree its scratch is used once more, and none is added. Throws LayoutError if a slot
+// does not fit a block.
+WidePlan plan_wide(Layout& layout, TreeSlots& tree, const BuildPlan* finished = nullptr);
+
+// From the binary tree its wide nodes, in depth-first order. A tree higher than WIDE_MAX_HEIGHT sets
+// ERROR_WIDE_TOO_DEEP; then, and without a tree, there are none.
+void append_wide(Chain& chain, const TreeSlots& tree, const WidePlan& plan);
+
+}  // namespace coppice

@@ -1,0 +1,102 @@
+// Wide tree: Ylitie, Karras and Laine, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide
+// BVHs", 2017: eight children a node, their boxes in 8 bits a plane on a grid of the node's own.
+#ifndef COPPICE_INTERFACE_WIDE_H
+#define COPPICE_INTERFACE_WIDE_H
+#include "types.h"
+INTERFACE_BEGIN
+
+const uint WIDE_CHILDREN = 8;
+const uint WIDE_PLANE_WORDS = 12;
+const uint WIDE_LEAF = 0x80000000u;   // in a child word: the rest is a triangle index; else it is a wide node
+const uint WIDE_EMPTY = 0xffffffffu;  // no child
+
+// Child c has six bytes of `planes` from byte 6 c on: min x, y, z, max x, y, z. A byte q of an axis means the
+// plane origin + q * step, rounded as float arithmetic rounds it; the step is the power of two whose biased
+// exponent is the axis' byte of `exponents` (x lowest). The box so decoded contains the child's box. An empty
+// child is min 255, max 0.
+struct WideNode {
+  vec3 origin;
+  uint exponents;
+  uint planes[WIDE_PLANE_WORDS];
+  uint child[WIDE_CHILDREN];
+};
+
+const uint WIDE_NODE_WORDS = 24;
+
+INTERFACE_BUFFER(WideNodeBuffer, WideNode, 16)
+
+// The conversion goes level by level, so a wide node first has an index in breadth-first order, and its place
+// in depth-first order at the end.
+
+const uint WIDE_GROUP = 64;
+const uint WIDE_TILE = 32;   // wide nodes of a level whose children one workgroup finds
+const uint WIDE_BLOCK = 64;  // tiles that are summed together
+
+const uint WIDE_MAX_HEIGHT = 256;     // of the binary tree; so levels of the wide one, at most
+const uint WIDE_LEAST_EXPONENT = 27;  // biased, of a step: 2^-100, so that no plane is denormal
+
+// In the word of a wide node's size, above the size itself: how many of its children have reported.
+const uint WIDE_ARRIVAL_SHIFT = 28;
+
+// What is known of a wide node before it has its place; indices are breadth-first.
+struct WideEntry {
+  uint root;         // the internal binary node it stands for, or the only leaf
+  uint parent;       // itself for the first one
+  uint first_child;  // of its children that are wide nodes; they follow each other
+  uint child_count;  // of these
+};
+
+// One level of the wide tree, written by the last tile of the level above. Zero behind the last level.
+struct WideLevel {
+  uint first;       // entry
+  uint count;       // of entries
+  uint first_tile;  // its place in tile_sums
+  uint first_block;
+  uvec3 groups;  // of the dispatch that finds its children
+  uint padding;
+};
+
+struct WideCounts {
+  uint node_count;  // 0: no tree
+  uint level_count;
+  uvec3 groups;  // of a dispatch over all wide nodes
+  uint padding0, padding1, padding2;
+};
+
+INTERFACE_BUFFER(WideEntryBuffer, WideEntry, 16)
+INTERFACE_BUFFER(WideLevelBuffer, WideLevel, 16)
+INTERFACE_BUFFER(WideCountsBuffer, WideCounts, 16)
+
+struct WideCollapseArgs {
+  NodeBuffer nodes;         // the binary tree
+  WideEntryBuffer entries;  // one a wide node, like children and sizes
+  UintBuffer children;      // WIDE_CHILDREN each: binary nodes, leaves with WIDE_LEAF; or WIDE_EMPTY
+  UintBuffer sizes;         // set to 1 for new wide nodes
+  UintBuffer tile_sums;     // children that are wide nodes, by tile; zero before
+  UintBuffer block_sums;    // the same by WIDE_BLOCK tiles
+  WideLevelBuffer levels;   // one more than there may be; zero before
+  WideCountsBuffer counts;  // zero before
+  BuildStateBuffer state;
+  uint level;  // whose children are found; unused by wide_root
+  uint padding;
+};
+
+struct WideSizesArgs {
+  WideEntryBuffer entries;
+  CoherentUintBuffer sizes;  // out: wide nodes of the subtree, below WIDE_ARRIVAL_SHIFT
+  UintBuffer offsets;        // out: place in depth-first order, counted from the parent's; none for the root
+  WideCountsBuffer counts;
+};
+
+struct WideQuantiseArgs {
+  NodeBuffer nodes;
+  WideEntryBuffer entries;
+  UintBuffer children;
+  UintBuffer sizes;
+  UintBuffer offsets;
+  WideCountsBuffer counts;
+  WideNodeBuffer wide_nodes;  // node_count, in depth-first order
+};
+
+INTERFACE_END
+#endif

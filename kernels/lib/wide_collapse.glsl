@@ -1,0 +1,61 @@
+// Which binary nodes become the children of a wide node: the greedy rule of Wald, Benthin and Boulos, "Getting Rid of
+// Packets", 2008, section 2.
+//
+// It starts with the root of the wide node as the only child. As long as there are fewer than eight, the internal child
+// of largest half area, of equal ones the first, gives its place to its first child, and its second child is appended.
+// Areas are normalised, and none decides that could be denormal or infinite: docs/numerics.md.
+#include "lib/normalised.glsl"
+
+const float NEVER_OPENED = -1.0;  // below every area
+
+struct Candidate {
+  uint child;  // as in WideCollapseArgs::children
+  uint pair;   // its first child, if it has any
+  float area;
+};
+
+Candidate candidate(uint index, Node node, Normalisation normalisation) {
+  precise vec3 extent = normalised(node.box_max, normalisation) - normalised(node.box_min, normalisation);
+  precise float area = extent.x * extent.y + extent.y * extent.z + extent.z * extent.x;
+  return node.height == 0u ? Candidate(index | WIDE_LEAF, 0u, NEVER_OPENED) : Candidate(index, node.child, area);
+}
+
+// Writes the children of a new wide node. Returns how many of them are wide nodes.
+uint collapse(uint entry, uint root, Normalisation normalisation) {
+  Candidate candidates[WIDE_CHILDREN];
+  [[unroll]] for (uint c = 0u; c < WIDE_CHILDREN; ++c) candidates[c] = Candidate(WIDE_EMPTY, 0u, NEVER_OPENED);
+  candidates[0] = candidate(root, args.nodes.at[root], normalisation);
+  [[unroll]] for (uint count = 1u; count < WIDE_CHILDREN; ++count) {
+    uint opened = 0u;
+    Candidate largest = candidates[0];
+    [[unroll]] for (uint c = 1u; c < count; ++c) {
+      if (candidates[c].area > largest.area) {
+        largest = candidates[c];
+        opened = c;
+      }
+    }
+    if (largest.area != NEVER_OPENED) {
+      Candidate left = candidate(largest.pair, args.nodes.at[largest.pair], normalisation);
+      candidates[count] = candidate(largest.pair + 1u, args.nodes.at[largest.pair + 1u], normalisation);
+      [[unroll]] for (uint c = 0u; c < count; ++c) {
+        if (c == opened) candidates[c] = left;
+      }
+    }
+  }
+  uint child_count = 0u;
+  [[unroll]] for (uint c = 0u; c < WIDE_CHILDREN; ++c) {
+    args.children.at[entry * WIDE_CHILDREN + c] = candidates[c].child;
+    child_count += (candidates[c].child & WIDE_LEAF) == 0u ? 1u : 0u;
+  }
+  return child_count;
+}
+
+// A new wide node, the index-th of its level; `tile` and `block` are its level's first ones.
+void enter(uint entry, uint root, uint parent, uint index, uint tile, uint block, Normalisation normalisation) {
+  uint child_count = collapse(entry, root, normalisation);
+  args.entries.at[entry] = WideEntry(root, parent, 0u, child_count);
+  args.sizes.at[entry] = 1u;
+  // Partners: these lines, for the other nodes of the tile and the block. Sums do not depend on their order.
+  atomicAdd(args.tile_sums.at[tile + index / WIDE_TILE], child_count);
+  atomicAdd(args.block_sums.at[block + index / (WIDE_TILE * WIDE_BLOCK)], child_count);
+}

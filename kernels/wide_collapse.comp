@@ -1,0 +1,86 @@
+// In:  a level of the wide tree. Out: the next level: of each wide node the binary nodes that are its children.
+// The order of the collapse is that of Ylitie, Karras and Laine 2017, section 4.1, without their costs.
+//
+// The children of a level follow each other in the order of their parents, so the prefix sums of child counts number
+// them. Each level leaves its counts summed by tiles, and a tile of the next dispatch adds up those before it: nobody
+// waits.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "interface/wide.h"
+
+layout(local_size_x = WIDE_GROUP) in;
+layout(push_constant, scalar) uniform Push { WideCollapseArgs args; };
+
+#include "lib/wide_groups.glsl"
+#include "lib/wide_collapse.glsl"
+
+shared uvec2 subgroup_sums[WIDE_GROUP / 4];  // no device has subgroups of fewer than 4
+shared uint roots[WIDE_TILE * WIDE_CHILDREN];
+shared uint parents[WIDE_TILE * WIDE_CHILDREN];
+
+uint lane() { return gl_SubgroupID * gl_SubgroupSize + gl_SubgroupInvocationID; }
+
+// This invocation's part of the sum over all tiles of the level before this one.
+uint part_of_sum_before(WideLevel level, uint tile) {
+  uint sum = 0u, block = tile / WIDE_BLOCK;
+  [[dont_unroll]] for (uint b = lane(); b < block; b += WIDE_GROUP) sum += args.block_sums.at[level.first_block + b];
+  [[dont_unroll]] for (uint t = block * WIDE_BLOCK + lane(); t < tile; t += WIDE_GROUP)
+    sum += args.tile_sums.at[level.first_tile + t];
+  return sum;
+}
+
+// Lists the roots of the children of entry `parent`, the first at `slot`.
+void list_children(uint parent, uint slot) {
+  [[dont_unroll]] for (uint c = 0u; c < WIDE_CHILDREN; ++c) {
+    uint child = args.children.at[parent * WIDE_CHILDREN + c];
+    if ((child & WIDE_LEAF) == 0u) {
+      roots[slot] = child;
+      parents[slot] = parent;
+      ++slot;
+    }
+  }
+}
+
+// Children before this tile in the level, and in the tile; they are in `roots` and `parents`.
+uvec2 list_tile(WideLevel level, uint tile) {
+  uint index = tile * WIDE_TILE + lane();
+  uint parent = level.first + index;
+  bool present = lane() < WIDE_TILE && index < level.count;
+  uint child_count = present ? args.entries.at[parent].child_count : 0u;
+  uint slot = subgroupExclusiveAdd(child_count);
+  uvec2 sums = subgroupAdd(uvec2(part_of_sum_before(level, tile), child_count));
+  if (subgroupElect()) subgroup_sums[gl_SubgroupID] = sums;
+  barrier();
+  sums = uvec2(0u);
+  [[dont_unroll]] for (uint s = 0u; s < gl_NumSubgroups; ++s) {
+    if (s == gl_SubgroupID) slot += sums.y;
+    sums += subgroup_sums[s];
+  }
+  if (child_count != 0u) {
+    args.entries.at[parent].first_child = level.first + level.count + sums.x + slot;
+    list_children(parent, slot);
+  }
+  barrier();
+  return sums;
+}
+
+void main() {
+  WideLevel level = args.levels.at[args.level];
+  uint tile = wide_group(), tile_count = wide_tiles(level.count);
+  if (tile >= tile_count) return;
+  uvec2 sums = list_tile(level, tile);
+  uint next_first = level.first + level.count;
+  uint next_tile = level.first_tile + tile_count;
+  uint next_block = level.first_block + (tile_count + WIDE_BLOCK - 1u) / WIDE_BLOCK;
+  Node root = args.nodes.at[0];
+  Normalisation normalisation = normalisation_of(root.box_min, root.box_max);
+  [[dont_unroll]] for (uint i = lane(); i < sums.y; i += WIDE_GROUP)
+    enter(next_first + sums.x + i, roots[i], parents[i], sums.x + i, next_tile, next_block, normalisation);
+  if (tile + 1u != tile_count || lane() != 0u) return;
+  uint count = sums.x + sums.y;
+  args.levels.at[args.level + 1u] = planned_level(next_first, count, next_tile, next_block);
+  if (count == 0u) {
+    uvec3 groups = wide_rows((next_first + WIDE_GROUP - 1u) / WIDE_GROUP);
+    args.counts.at[0] = WideCounts(next_first, args.level + 1u, groups, 0u, 0u, 0u);
+  }
+}

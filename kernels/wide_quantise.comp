@@ -1,0 +1,107 @@
+// In:  the wide tree in breadth-first order and its sizes. Out: its nodes in depth-first order, children in the order
+// of their slots, boxes quantised.
+// Ylitie, Karras and Laine 2017, section 3.1. Each plane is found by comparing decoded planes with the box, so that the
+// decoded box contains the child's, whatever the rounding: docs/numerics.md.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "interface/wide.h"
+
+layout(local_size_x = WIDE_GROUP) in;
+layout(push_constant, scalar) uniform Push { WideQuantiseArgs args; };
+
+#include "lib/wide_groups.glsl"
+
+const uint SIZE_MASK = (1u << WIDE_ARRIVAL_SHIFT) - 1u;
+
+struct Grid {
+  vec3 origin, cell;
+};
+
+vec3 plane(Grid grid, vec3 q) {
+  precise vec3 position = grid.origin + q * grid.cell;
+  return position;
+}
+
+vec3 cells_of(uvec3 exponents) { return uintBitsToFloat(exponents << 23); }
+
+// The smallest powers of two with which the grid reaches the other end of the box. It is one of three, see
+// docs/numerics.md.
+uvec3 cell_exponents(Node node) {
+  precise vec3 extent = node.box_max - node.box_min;
+  uvec3 exponents = max(floatBitsToUint(extent) >> 23, uvec3(WIDE_LEAST_EXPONENT + 8u)) - 8u;
+  [[unroll]] for (uint larger = 0u; larger < 2u; ++larger) {
+    bvec3 short_of_it = lessThan(plane(Grid(node.box_min, cells_of(exponents)), vec3(255.0)), node.box_max);
+    exponents += mix(uvec3(0u), uvec3(1u), short_of_it);
+  }
+  return exponents;
+}
+
+// The last planes that are not above the position.
+uvec3 planes_below(Grid grid, vec3 position) {
+  vec3 q = vec3(0.0);
+  [[unroll]] for (uint bit = 128u; bit > 0u; bit >>= 1)
+    q = mix(q, q + float(bit), lessThanEqual(plane(grid, q + float(bit)), position));
+  return uvec3(q);
+}
+
+// The first planes that are not below the position.
+uvec3 planes_above(Grid grid, vec3 position) {
+  vec3 q = vec3(0.0);
+  [[unroll]] for (uint bit = 128u; bit > 0u; bit >>= 1)
+    q = mix(q, q + float(bit), lessThan(plane(grid, q + float(bit - 1u)), position));
+  return uvec3(q);
+}
+
+// The place in depth-first order.
+uint find_place(uint entry) {
+  uint place = 0u;
+  [[dont_unroll]] for (uint turn = 0u; turn < WIDE_MAX_HEIGHT && entry != 0u; ++turn) {
+    place += args.offsets.at[entry];
+    entry = args.entries.at[entry].parent;
+  }
+  return place;
+}
+
+struct Children {
+  uint next_child;  // entry of the next child that is a wide node
+  uint next_place;  // and where it is
+};
+
+// Writes a child word. Returns the planes as two words: min x, y, z, max x and max y, z.
+uvec2 place_child(uint place, uint slot, uint child, Grid grid, inout Children children) {
+  uint word = WIDE_EMPTY;
+  uvec3 low = uvec3(255u), high = uvec3(0u);
+  if (child != WIDE_EMPTY) {
+    Node node = args.nodes.at[child & ~WIDE_LEAF];
+    low = planes_below(grid, node.box_min);
+    high = planes_above(grid, node.box_max);
+    word = WIDE_LEAF | node.child;
+    if ((child & WIDE_LEAF) == 0u) {
+      word = children.next_place;
+      children.next_place += args.sizes.at[children.next_child++] & SIZE_MASK;
+    }
+  }
+  args.wide_nodes.at[place].child[slot] = word;
+  return uvec2(low.x | low.y << 8 | low.z << 16 | high.x << 24, high.y | high.z << 8);
+}
+
+void main() {
+  uint index = wide_group() * WIDE_GROUP + gl_LocalInvocationIndex;
+  if (index >= args.counts.at[0].node_count) return;
+  WideEntry entry = args.entries.at[index];
+  uint place = find_place(index);
+  Node root = args.nodes.at[entry.root];
+  uvec3 exponents = cell_exponents(root);
+  Grid grid = Grid(root.box_min, cells_of(exponents));
+  args.wide_nodes.at[place].origin = grid.origin;
+  args.wide_nodes.at[place].exponents = exponents.x | exponents.y << 8 | exponents.z << 16;
+  Children children = Children(entry.first_child, place + 1u);
+  [[dont_unroll]] for (uint pair = 0u; pair < WIDE_CHILDREN / 2u; ++pair) {
+    uint slot = 2u * pair, list = index * WIDE_CHILDREN + slot;
+    uvec2 even = place_child(place, slot, args.children.at[list], grid, children);
+    uvec2 odd = place_child(place, slot + 1u, args.children.at[list + 1u], grid, children);
+    args.wide_nodes.at[place].planes[3u * pair] = even.x;
+    args.wide_nodes.at[place].planes[3u * pair + 1u] = even.y | odd.x << 16;
+    args.wide_nodes.at[place].planes[3u * pair + 2u] = odd.x >> 16 | odd.y << 16;
+  }
+}

@@ -1,0 +1,137 @@
+// Packets through the wide tree find, bit for bit, what single rays find in the binary tree it was made from.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "analysis/compare.h"
+#include "analysis/hard_rays.h"
+#include "apps/frame.h"
+#include "builders/ploc.h"
+#include "pipeline/ray_tracing.h"
+#include "pipeline/traffic.h"
+#include "scene/hard_cases.h"
+#include "stages/errors.h"
+#include "stages/lockstep_executor.h"
+#include "support/lockstep.h"
+
+namespace coppice {
+namespace {
+
+class TraceWide : public DeviceTest {
+ protected:
+  static TraceOptions options_for(bool wide) {
+    TraceOptions options = test_trace_options(1, 1);
+    options.wide = wide;
+    return options;
+  }
+
+  // How many of the rays hit.
+  static std::uint64_t expect_same_hits(std::span<const Triangle> triangles, std::span<const Ray> rays,
+                                        const std::string& what) {
+    const Bvh bvh = build_ploc(triangles, {});
+    RayTracing tracing(test_device(), bvh.nodes, triangles, static_cast<std::uint32_t>(rays.size()), true);
+    const TracedRays binary = tracing.on_device(rays, options_for(false));
+    const TracedRays wide = tracing.on_device(rays, options_for(true));
+    EXPECT_EQ(binary.error_word, 0u) << what;
+    EXPECT_EQ(wide.error_word, 0u) << what << ": " << describe_error_word(wide.error_word);
+    EXPECT_EQ(compare_hits(binary.hits, wide.hits).count, 0u) << what;
+    EXPECT_EQ(compare_hits(tracing.by_twins(rays, options_for(true)).hits, wide.hits).count, 0u) << what;
+    EXPECT_EQ(binary.hit_count, wide.hit_count) << what;
+    return wide.hit_count;
+  }
+
+  // Of all kinds, so that packets hold rays of one kind, and then so that they hold rays of all.
+  static std::vector<Ray> all_kinds(std::span<const Triangle> triangles, std::span<const Node> nodes,
+                                    std::uint32_t count) {
+    std::vector<Ray> rays;
+    for (const RayKindName& kind : ray_kinds()) {
+      const std::vector<Ray> more = hard_rays(kind.kind, triangles, nodes, count, 1);
+      rays.insert(rays.end(), more.begin(), more.end());
+    }
+    std::vector<Ray> mixed = rays;
+    std::ranges::shuffle(mixed, std::mt19937(1));
+    rays.insert(rays.end(), mixed.begin(), mixed.end());
+    return rays;
+  }
+};
+
+TEST_F(TraceWide, HardRaysAtHardCases) {
+  std::uint64_t hit_count = 0;
+  for (const std::string_view name : hard_case_names()) {
+    Scene scene = find_hard_case(std::string(name))->make(500, 1);
+    bring_into_range(scene);
+    const std::vector<Triangle> triangles = scene_arrays(scene).triangles;
+    const Bvh bvh = build_ploc(triangles, {});
+    hit_count += expect_same_hits(triangles, all_kinds(triangles, bvh.nodes, 70), std::string(name));
+  }
+  EXPECT_GT(hit_count, 10000u);
+}
+
+TEST_F(TraceWide, FewRaysAndFewTriangles) {
+  for (std::uint32_t count = 0; count <= 20; ++count) {
+    const std::vector<Triangle> triangles = random_triangles(count, count, 0.5f);
+    const std::vector<Ray> rays = hard_rays(RayKind::VERTICES, triangles, {}, 130, count);
+    for (const std::size_t ray_count : {1, 63, 64, 65, 130})
+      expect_same_hits(triangles, std::span(rays).first(ray_count),
+                       std::to_string(count) + " triangles, " + std::to_string(ray_count) + " rays");
+  }
+}
+
+// Rays that have a hit already, some of them closer than what the tree holds.
+TEST_F(TraceWide, EarlierHitsStay) {
+  const std::vector<Triangle> triangles = random_triangles(5000, 3, 0.1f);
+  std::vector<Ray> rays = hard_rays(RayKind::RANDOM, triangles, {}, 1000, 4);
+  for (std::size_t i = 0; i < rays.size(); ++i) rays[i].t_max = static_cast<float>(i % 10) * 0.1f;
+  EXPECT_GT(expect_same_hits(triangles, rays, "short rays"), 100u);
+}
+
+// Camera rays, which fill packets as they are meant to be filled: all buffers, the count of visited nodes
+// with them.
+TEST_F(TraceWide, APictureInLockstep) {
+  for (const uvec2 size : {uvec2(1, 1), uvec2(19, 13), uvec2(64, 48), uvec2(200, 7)}) {
+    const std::vector<Triangle> triangles = random_triangles(3000, 5, 0.1f);
+    TraceOptions options = test_trace_options(size.x, size.y);
+    options.wide = true;
+    options.samples = 2;
+    Layout layout(test_device().properties().max_block_bytes);
+    BuildPlan build = plan_build(layout, static_cast<std::uint32_t>(triangles.size()), {});
+    const WidePlan wide = plan_wide(layout, build, &build);
+    const TracePlan trace = plan_trace(layout, build, 1, options);
+    LockstepExecutor executor(test_device(), layout);
+    SceneArrays arrays;
+    arrays.triangles = triangles;
+    arrays.material_index.resize(triangles.size());
+    arrays.materials = {{vec3(0.1f), vec3(0.8f)}};
+    Film film{vec3(0.5f, 0.5f, -2), size.x, vec3(-0.5f, 0.5f, 2), size.y, {}, options.samples, {}, 0};
+    film.right = vec3(1.0f / static_cast<float>(size.x), 0, 0);
+    film.down = vec3(0, -1.0f / static_cast<float>(size.y), 0);
+    upload_frame(executor, build, trace, arrays, film);
+    const auto difference = executor.run([&](Chain& chain) {
+      append_build(chain, build);
+      append_wide(chain, build, wide);
+      append_trace(chain, build, trace);
+    });
+    ASSERT_FALSE(difference) << "stage " << difference->stage << ", " << difference->slot << "["
+                             << difference->index << "]\ncpu " << difference->cpu << "\ngpu "
+                             << difference->gpu;
+    const RunCounts counts = counts_of_trace(executor.gpu().read(trace.counters)[0]);
+    EXPECT_EQ(counts.rays, 2u * size.x * size.y);
+    EXPECT_GE(counts.steps, counts.hits);
+  }
+}
+
+TEST_F(TraceWide, IsRefusedWithTestsThatDependOnTheOrder) {
+  Layout layout;
+  TreeSlots tree = plan_tree(layout, 1, 1);
+  plan_wide(layout, tree);
+  TraceOptions options = options_for(true);
+  options.triangle_test = TRIANGLE_FAST;
+  const TracePlan trace = plan_trace(layout, tree, 1, options);
+  GpuExecutor executor(test_device(), layout);
+  Chain chain = executor.chain();
+  EXPECT_THROW(append_trace(chain, tree, trace), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace coppice
