@@ -6,6 +6,7 @@
 #include "lib/exact_vector.glsl"
 #include "lib/offset_origin.glsl"
 #include "lib/random.glsl"
+#include "lib/ray_words.glsl"
 
 layout(local_size_x = BOUNCE_RAYS_GROUP) in;
 layout(push_constant, scalar) uniform Push { BounceRaysArgs args; };
@@ -41,7 +42,7 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= args.ray_count) return;
   float far = uintBitsToFloat(0x7f800000u);
-  Hit hit = args.hits.at[i];
+  Hit hit = load_hit(args.hits, i);
   Ray ray = Ray(vec3(0.0), 0.0, vec3(0.0), far);
   if (hit.triangle != NO_TRIANGLE) {
     Triangle triangle = args.triangles.at[hit.triangle];
@@ -51,6 +52,6 @@ void main() {
     next_random(state);
     ray = Ray(offset_origin(triangle, hit.u, hit.v, normal), 0.0, around(normal, disk_point(state)), far);
   }
-  args.bounced.at[i] = ray;
-  args.bounced_hits.at[i] = Hit(far, NO_TRIANGLE, 0.0, 0.0);
+  store_ray(args.bounced, i, ray);
+  store_hit(args.bounced_hits, i, Hit(far, NO_TRIANGLE, 0.0, 0.0));
 }

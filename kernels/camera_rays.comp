@@ -4,6 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "interface/trace.h"
 #include "lib/film_pixel.glsl"
+#include "lib/ray_words.glsl"
 
 layout(local_size_x = CAMERA_RAYS_GROUP) in;
 layout(push_constant, scalar) uniform Push { CameraRaysArgs args; };
@@ -22,6 +23,6 @@ void main() {
   vec2 position = film_position(film_pixel(args.first_ray + i, film), film);
   precise vec3 direction = film.corner + film.right * position.x + film.down * position.y;
   float far = uintBitsToFloat(0x7f800000u);
-  args.rays.at[i] = Ray(film.position, 0.0, direction, far);
-  args.hits.at[i] = Hit(far, NO_TRIANGLE, 0.0, 0.0);
+  store_ray(args.rays, i, Ray(film.position, 0.0, direction, far));
+  store_hit(args.hits, i, Hit(far, NO_TRIANGLE, 0.0, 0.0));
 }

@@ -4,15 +4,18 @@
 #extension GL_GOOGLE_include_directive : require
 #include "interface/trace.h"
 #include "lib/film_pixel.glsl"
+#include "lib/selected.glsl"
 
 layout(local_size_x = RESOLVE_GROUP) in;
 layout(push_constant, scalar) uniform Push { ResolveArgs args; };
 
+// A guess that is at most one off, whatever the device's pow; thresholds decide.
 uint srgb_code(float linear) {
-  uint code = 0u;
-  [[dont_unroll]] for (uint bit = 128u; bit != 0u; bit >>= 1) {
-    if (linear >= uintBitsToFloat(args.srgb_thresholds.at[code + bit])) code += bit;
-  }
+  float x = lesser(greater(linear, 0.0), 1.0);
+  float encoded = x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1.0 / 2.4) - 0.055;
+  uint code = uint(clamp(encoded * 255.0 + 0.5, 0.0, 255.0));
+  if (linear < uintBitsToFloat(args.srgb_thresholds.at[code])) return code - 1u;
+  if (code < 255u && linear >= uintBitsToFloat(args.srgb_thresholds.at[code + 1u])) return code + 1u;
   return code;
 }
 

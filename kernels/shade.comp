@@ -4,6 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "interface/trace.h"
 #include "lib/exact_vector.glsl"
+#include "lib/ray_words.glsl"
 
 layout(local_size_x = SHADE_GROUP) in;
 layout(push_constant, scalar) uniform Push { ShadeArgs args; };
@@ -29,7 +30,7 @@ vec3 surface(Ray ray, uint index, Lighting lighting) {
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= args.ray_count) return;
-  Ray ray = args.rays.at[i];
+  Ray ray = load_ray(args.rays, i);
   uint index = args.hits.at[i].triangle;
   Lighting lighting = args.lighting.at[0];
   vec3 colour = index == NO_TRIANGLE ? sky(ray.direction, lighting) : surface(ray, index, lighting);

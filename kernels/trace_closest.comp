@@ -3,6 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/trace.h"
+#include "lib/ray_words.glsl"
 #include "lib/trace_counters.glsl"
 #include "lib/trace_ray.glsl"
 
@@ -90,8 +91,8 @@ void main() {
   uint steps = 0u;
   bool has_hit = false;
   if (present && args.state.at[0].active_count != 0u) {
-    Ray given = args.rays.at[i];
-    Hit so_far = args.hits.at[i];
+    Ray given = load_ray(args.rays, i);
+    Hit so_far = load_hit(args.hits, i);
     TraceRay ray;
     if (prepare_ray(given, ray)) {
       Node root = args.nodes.at[0];
@@ -101,7 +102,7 @@ void main() {
       Hit hit = prepared_hit(ray, so_far);
       steps = trace(ray, hit);
       keep_given(ray, given, hit, so_far);
-      args.hits.at[i] = so_far;
+      store_hit(args.hits, i, so_far);
     }
     has_hit = so_far.triangle != NO_TRIANGLE;
   }

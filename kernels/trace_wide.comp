@@ -8,6 +8,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_shuffle : require
 #include "interface/trace.h"
+#include "lib/ray_words.glsl"
 #include "lib/trace_counters.glsl"
 #include "lib/trace_ray.glsl"
 
@@ -29,6 +30,7 @@ const uint RAYS = (TRACE_PACKET + LANES - 1u) / LANES;  // of an invocation
 
 TraceRay rays[RAYS];
 Hit hits[RAYS];
+uint given_triangle[RAYS];  // of the hits so far
 uint turns = 0u;
 
 shared uvec2 stack[WIDE_MAX_HEIGHT];  // node, and its children still to be visited
@@ -158,48 +160,49 @@ uint ray_index(uint r) { return gl_WorkGroupID.x * TRACE_PACKET + r * LANES + gl
 // A ray that hits nothing gets an empty range, and takes no part in the bundle.
 void prepare(uint r, Aabb scene, inout RayBundle bundle) {
   Ray given;
+  Hit so_far = Hit(0.0, NO_TRIANGLE, 0.0, 0.0);
   bool sound = ray_index(r) < args.ray_count;
-  if (sound) given = args.rays.at[ray_index(r)];
+  if (sound) so_far = load_hit(args.hits, ray_index(r));
+  given_triangle[r] = so_far.triangle;
+  if (sound) given = load_ray(args.rays, ray_index(r));
   sound = sound && prepare_ray(given, rays[r]);
   if (sound) {
     approach_scene(scene, rays[r]);
     widen_slabs(scene, rays[r]);
-    hits[r] = prepared_hit(rays[r], args.hits.at[ray_index(r)]);
+    hits[r] = prepared_hit(rays[r], so_far);
     add_to_bundle(rays[r], bundle);
   } else {
     rays[r].t_min = uintBitsToFloat(0x7f800000u);
-    hits[r] = Hit(-rays[r].t_min, NO_TRIANGLE, 0.0, 0.0);
+    hits[r] = Hit(-rays[r].t_min, so_far.triangle, 0.0, 0.0);
   }
 }
 
-// Writes the hits of the sound rays. How many rays there are, and how many of them hit.
+// Writes the new hits. How many rays there are, and how many of them hit.
 uvec2 keep_hits() {
   uvec2 counts = uvec2(0u);
   [[unroll]] for (uint r = 0u; r < RAYS; ++r) {
     uint i = ray_index(r);
-    if (i < args.ray_count) {
-      Hit so_far = args.hits.at[i];
-      if (hits[r].triangle != so_far.triangle && hits[r].triangle != NO_TRIANGLE) {
-        keep_given(rays[r], args.rays.at[i], hits[r], so_far);
-        args.hits.at[i] = so_far;
-      }
-      counts += uvec2(1u, so_far.triangle != NO_TRIANGLE ? 1u : 0u);
+    if (hits[r].triangle != given_triangle[r]) {
+      Hit so_far = load_hit(args.hits, i);
+      keep_given(rays[r], load_ray(args.rays, i), hits[r], so_far);
+      store_hit(args.hits, i, so_far);
+      given_triangle[r] = so_far.triangle;
     }
+    counts += uvec2(i < args.ray_count ? 1u : 0u, given_triangle[r] != NO_TRIANGLE ? 1u : 0u);
   }
   return counts;
 }
 
 void main() {
   uint visited = 0u;
-  if (args.wide_counts.at[0].node_count != 0u) {
-    Node root = args.nodes.at[0];
-    Aabb scene = Aabb(root.box_min, root.box_max);
-    RayBundle bundle = empty_bundle();
-    [[unroll]] for (uint r = 0u; r < RAYS; ++r) prepare(r, scene, bundle);
+  Node root = Node(vec3(0.0), 0u, vec3(0.0), 0u);
+  bool has_tree = args.wide_counts.at[0].node_count != 0u;
+  if (has_tree) root = args.nodes.at[0];
+  RayBundle bundle = empty_bundle();
+  [[unroll]] for (uint r = 0u; r < RAYS; ++r) prepare(r, Aabb(root.box_min, root.box_max), bundle);
+  if (has_tree) {
     bind_packet(bundle);
     visited = trace(bundle);
-  } else {
-    [[unroll]] for (uint r = 0u; r < RAYS; ++r) hits[r].triangle = NO_TRIANGLE;
   }
   uvec2 counts = keep_hits();
   COUNT_INTO(args.counters.at[0].rays, counts.x)

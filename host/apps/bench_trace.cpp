@@ -17,13 +17,16 @@ namespace {
 
 constexpr std::size_t checked_rays = 20000;
 
+// A ray through the centre of each pixel, in the order of FILM_STRIP.
 std::vector<Ray> rays_through(const Film& film) {
   std::vector<Ray> rays;
-  for (std::uint32_t y = 0; y < film.height; ++y) {
+  for (std::uint32_t top = 0; top < film.height; top += FILM_STRIP) {
     for (std::uint32_t x = 0; x < film.width; ++x) {
-      const vec3 direction = film.corner + film.right * (static_cast<float>(x) + 0.5f) +
-                             film.down * (static_cast<float>(y) + 0.5f);
-      rays.push_back({film.position, 0, direction, std::numeric_limits<float>::infinity()});
+      for (std::uint32_t y = top; y < std::min(top + FILM_STRIP, film.height); ++y) {
+        const vec3 direction = film.corner + film.right * (static_cast<float>(x) + 0.5f) +
+                               film.down * (static_cast<float>(y) + 0.5f);
+        rays.push_back({film.position, 0, direction, std::numeric_limits<float>::infinity()});
+      }
     }
   }
   return rays;
@@ -53,30 +56,53 @@ void add_frame(CheckedDevice& device, Options options, const Scene& scene, Bench
   row.note = note;
 }
 
-void bench_tree(CheckedDevice& device, const Options& options, const Scene& scene, const SceneArrays& arrays,
-                const AddRow& add) {
-  const Bvh bvh = find_cpu_builder(find_device_builder(options.builder)->cpu_builder)
-                      .build(arrays.triangles, {options.radius, morton_bits_for(options, arrays.triangles)});
-  const TraceOptions trace = device.trace_options(options);
-  const std::vector<Ray> primary =
-      rays_through(make_film(scene, options.camera, options.width, options.height, 1));
-  RayTracing tracing(device.device, bvh.nodes, arrays.triangles, static_cast<std::uint32_t>(primary.size()));
-  std::vector<Ray> bounced = tracing.bounce(primary, trace, 1);
-  std::erase_if(bounced,
-                [](const Ray& ray) { return ray.direction == vec3(0); });  // of rays that hit nothing
-  for (const std::vector<Ray>* const rays : {&primary, static_cast<const std::vector<Ray>*>(&bounced)}) {
-    const std::string name = rays == &primary ? "trace_primary" : "trace_diffuse";
-    const std::string input = scene.name + " " + options.builder;
-    if (rays->empty() || !is_wanted(options, name, input)) continue;
-    check_hits(tracing, *rays, trace, device.device.properties().type == DeviceType::cpu);
+// Rays of a scene, and the trees of one builder that they are traced through.
+struct TraceBench {
+  CheckedDevice& device;
+  const Options& options;
+  const Scene& scene;
+  RayTracing& tracing;
+
+  void measure(const std::string& name, std::span<const Ray> rays, bool wide, const AddRow& add) const {
+    const std::string tree = wide ? "wide" : "binary";
+    const std::string input = scene.name + " " + options.builder + " " + tree;
+    if (rays.empty() || !is_wanted(options, name, input)) return;
+    TraceOptions trace = device.trace_options(options);
+    trace.wide = wide;
+    check_hits(tracing, rays, trace, device.device.properties().type == DeviceType::cpu);
     const auto run = [&] {
-      const TracedRays traced = tracing.on_device(*rays, trace);
+      const TracedRays traced = tracing.on_device(rays, trace);
       if (traced.error_word) throw DeviceError(describe_error_word(traced.error_word));
       return traced.ms;
     };
-    BenchRow row = bench_row(name, input, rays->size(), measure_steady(steady_options(options, run()), run));
-    if (rays == &primary) add_frame(device, options, scene, row);
+    BenchRow row = bench_row(name, input, rays.size(), measure_steady(steady_options(options, run()), run));
+    if (name == "trace_primary") {
+      Options frame = options;
+      frame.tree = tree;
+      add_frame(device, frame, scene, row);
+    }
     add(row);
+  }
+};
+
+void bench_trees(CheckedDevice& device, const Options& options, const Scene& scene, const SceneArrays& arrays,
+                 const AddRow& add) {
+  const Bvh bvh = find_cpu_builder(find_device_builder(options.builder)->cpu_builder)
+                      .build(arrays.triangles, {options.radius, morton_bits_for(options, arrays.triangles)});
+  const TraceOptions trace = device.trace_options(options);
+  const bool has_wide = trace.triangle_test == TRIANGLE_WATERTIGHT && trace.box_test == BOX_ROBUST;
+  const std::vector<Ray> primary =
+      rays_through(make_film(scene, options.camera, options.width, options.height, 1));
+  RayTracing tracing(device.device, bvh.nodes, arrays.triangles, static_cast<std::uint32_t>(primary.size()),
+                     has_wide);
+  std::vector<Ray> bounced = tracing.bounce(primary, trace, 1);
+  std::erase_if(bounced,
+                [](const Ray& ray) { return ray.direction == vec3(0); });  // of rays that hit nothing
+  const TraceBench bench{device, options, scene, tracing};
+  for (const bool wide : {false, true}) {
+    if (wide && !has_wide) continue;
+    bench.measure("trace_primary", primary, wide, add);
+    bench.measure("trace_diffuse", bounced, wide, add);
   }
 }
 
@@ -89,7 +115,7 @@ void bench_trace(CheckedDevice& device, const Options& options, const AddRow& ad
   for (const std::string& builder :
        options.builders.empty() ? std::vector{options.builder} : options.builders) {
     one.builder = builder;
-    bench_tree(device, one, scene, arrays, add);
+    bench_trees(device, one, scene, arrays, add);
   }
 }
 
