@@ -33,4 +33,8 @@ void bench_sort(CheckedDevice& device, const Options& options, const AddRow& add
 void bench_build(CheckedDevice& device, const Options& options, const AddRow& add);
 void bench_trace(CheckedDevice& device, const Options& options, const AddRow& add);
 
+// One row of bench_sort; `count` is a multiple of 4, `preset` one of its kinds of keys.
+BenchRow bench_pairs(CheckedDevice& device, const Options& options, std::uint32_t count,
+                     std::uint32_t key_words, const std::string& preset);
+
 }  // namespace coppice

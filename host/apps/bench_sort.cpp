@@ -46,6 +46,8 @@ void check_sorted(const GpuExecutor& executor, const BuildPlan& plan, const std:
 
 Slot<uvec4> quads_of(const Slot<uint>& slot) { return {slot.place, slot.bytes() / sizeof(uvec4)}; }
 
+}  // namespace
+
 BenchRow bench_pairs(CheckedDevice& device, const Options& options, std::uint32_t count,
                      std::uint32_t key_words, const std::string& preset) {
   Layout layout(device.device.properties().max_block_bytes);
@@ -60,8 +62,8 @@ BenchRow bench_pairs(CheckedDevice& device, const Options& options, std::uint32_
   executor.upload(given_values, std::span<const uint>(values));
 
   Chain chain = executor.chain();  // the sort ends where it began, so each run fetches its pairs anew
-  append_copy(chain, {quads_of(given_keys), quads_of(plan.keys[0])}, 2 * given_keys.bytes());
-  append_copy(chain, {quads_of(given_values), quads_of(plan.values[0])}, 2 * given_values.bytes());
+  append_copy(chain, {quads_of(given_keys), quads_of(plan.unsorted_keys)}, 2 * given_keys.bytes());
+  append_copy(chain, {quads_of(given_values), quads_of(plan.unsorted_values)}, 2 * given_values.bytes());
   chain.mark();
   append_sort(chain, plan);
   Recorder recorder = executor.record(chain.steps());
@@ -75,8 +77,6 @@ BenchRow bench_pairs(CheckedDevice& device, const Options& options, std::uint32_
   });
   return bench_row(name, preset, count, time);
 }
-
-}  // namespace
 
 void bench_sort(CheckedDevice& device, const Options& options, const AddRow& add) {
   for (const std::uint32_t key_words : {1u, 2u}) {

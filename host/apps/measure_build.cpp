@@ -84,6 +84,7 @@ BuildReport measure_gpu_build(CheckedDevice& device, GpuExecutor& executor, cons
 
   report.device = device.device.properties().name;
   report.driver = device.device.properties().driver;
+  report.variants = to_string(plan.options.variants);
   report.build_ms = spread_of(build_ms);
   report.wall_ms = spread_of(wall_ms);
   report.runs = options.runs;
