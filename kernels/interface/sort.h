@@ -30,7 +30,7 @@ const uint SORT_MATCH_TILE = 4096;
 const uint SORT_NARROW_BITS = 8;
 const uint SORT_WIDE_BITS = 11;
 const uint SORT_SCAN_TILE = 16384;
-const uint SORT_TILE_SCAN_GROUP = 64;
+const uint SORT_TILE_SCAN_GROUP = 256;
 
 struct SortHistogramArgs {
   UintBuffer keys;       // count * key_words
