@@ -32,6 +32,7 @@ TEST_F(Command, BadFlagsAreRefusedWithStatus2) {
                {"render one.obj -o out.png --radius 0", "--radius"},
                {"render one.obj -o out.png --radius 101", "--radius"},
                {"render one.obj -o out.png --morton-bits 31", "--morton-bits"},
+               {"render one.obj -o out.png --variants sort=nonsense", "sort has no variant 'nonsense'"},
                {"render one.obj -o out.png --size 0x0", "--size"},
                {"render one.obj -o out.png --size 100000x100000", "--size"},
                {"render one.obj -o out.png --size 64", "--size"},
@@ -202,6 +203,52 @@ TEST_F(Command, BenchRefusesWhatItCannotMeasure) {
   expect_refused("bench trace nonsense", 1, "nonsense");
 }
 
+// The file that starts so in the folder; empty if there is none.
+std::string kept_file(const fs::path& folder, const std::string& stem) {
+  for (const auto& file : fs::directory_iterator(folder))
+    if (file.path().filename().string().starts_with(stem)) return file.path();
+  return {};
+}
+
+TEST_F(Command, TuneKeepsATableThatLaterRunsRead) {
+  const char* const home = std::getenv("XDG_CACHE_HOME");
+  const std::string before = home ? home : "";
+  setenv("XDG_CACHE_HOME", folder_.c_str(), 1);
+  const auto sort_of_a_build = [](const std::string& arguments, std::string& err) {
+    const Outcome build = run("build terrain:500 --runs 1 --json - " + arguments);
+    err = build.err;
+    EXPECT_EQ(build.status, 0) << build.err;
+    return build.status ? "" : nlohmann::json::parse(build.out)["variants"].get<std::string>();
+  };
+  std::string err;
+  const std::string by_rule = sort_of_a_build("", err);
+  EXPECT_EQ(sort_of_a_build("--variants sort=onesweep-match", err), "sort=onesweep-match");
+
+  const Outcome tune = run("tune --most 3000 --runs 1 --validate --json -");
+  ASSERT_EQ(tune.status, 0) << tune.err;
+  const auto stage = nlohmann::json::parse(tune.out)["stages"].at(0);
+  EXPECT_EQ(stage["variants"].size(), 5u);
+  const std::string table = kept_file(folder_ / "coppice", "variants-");
+  ASSERT_FALSE(table.empty());
+  const std::string text = read(table), chosen = "sort=" + stage["chosen"].get<std::string>();
+  EXPECT_TRUE(text.ends_with("\n" + chosen + "\n")) << text;
+  EXPECT_EQ(sort_of_a_build("", err), chosen);
+
+  write(table, text.substr(0, text.rfind('\n', text.size() - 2) + 1) + "sort=scan-11\n");
+  EXPECT_EQ(sort_of_a_build("", err), "sort=scan-11");
+  EXPECT_EQ(sort_of_a_build("--variants default", err), by_rule);
+  EXPECT_EQ(err.find("variants-"), std::string::npos) << err;
+
+  write(table, "corrupt");
+  EXPECT_EQ(sort_of_a_build("", err), by_rule);
+  EXPECT_NE(err.find("is no table of variants; ignored"), std::string::npos) << err;
+  EXPECT_EQ(std::ranges::count(err, '\n'), 1) << err;
+  if (home)
+    setenv("XDG_CACHE_HOME", before.c_str(), 1);
+  else
+    unsetenv("XDG_CACHE_HOME");
+}
+
 TEST_F(Command, ChoosesTheMortonBitsThatTheSceneCallsFor) {
   std::string crowded;
   for (std::uint64_t i = 0; i < 3000; ++i) {
@@ -303,7 +350,7 @@ TEST_F(Command, TraceEventsNameTheKernels) {
     return std::ranges::any_of(
         events, [&](const auto& event) { return event["name"] == name && event["ph"] == "X"; });
   };
-  for (const char* name : {"primitive_bounds", "sort_pass", "ploc_merge", "ploc_finish"})
+  for (const char* name : {"primitive_bounds", "morton_codes", "ploc_merge", "ploc_finish"})
     EXPECT_TRUE(named(name)) << name;
 }
 

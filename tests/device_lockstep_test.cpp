@@ -53,7 +53,18 @@ TEST_P(LockstepVariants, SameBits) {
 
 BuildOptions variant(std::uint32_t radius, std::uint32_t bits, bool lookback = true,
                      std::uint32_t turns = 16) {
-  return {radius, bits, lookback, turns};
+  BuildOptions options;
+  options.radius = radius;
+  options.morton_bits = bits;
+  options.lookback = lookback;
+  options.lookback_turns = turns;
+  return options;
+}
+
+BuildOptions sorted_by(std::uint32_t sort, std::uint32_t bits) {
+  BuildOptions options = variant(8, bits);
+  options.variants.sort = sort;
+  return options;
 }
 
 INSTANTIATE_TEST_SUITE_P(Options, LockstepVariants,
@@ -64,7 +75,11 @@ INSTANTIATE_TEST_SUITE_P(Options, LockstepVariants,
                                          Variant{"radius100", variant(100, 30)},
                                          Variant{"without_lookback", variant(8, 30, false)},
                                          Variant{"without_lookback_60_bits", variant(8, 60, false)},
-                                         Variant{"no_polls_so_fallbacks", variant(8, 30, true, 0)}),
+                                         Variant{"no_polls_so_fallbacks", variant(8, 30, true, 0)},
+                                         Variant{"sort_scan", sorted_by(SORT_SCAN, 30)},
+                                         Variant{"sort_scan_60_bits", sorted_by(SORT_SCAN, 60)},
+                                         Variant{"sort_scan_8", sorted_by(SORT_SCAN_8, 30)},
+                                         Variant{"sort_match", sorted_by(SORT_ONESWEEP_MATCH, 30)}),
                          [](const auto& info) { return info.param.name; });
 
 class LockstepHardCases : public DeviceTest, public testing::WithParamInterface<std::string_view> {};
@@ -136,11 +151,11 @@ struct Fault {
   const char* slot;
   StageDeclaration declaration;
   DeviceBuilder builder = DeviceBuilder::ploc;
+  bool lookback = true;
 };
 
 void wrong_shift(const void* args) {
   auto sort = args_of<SortPassArgs>(args);
-  sort.lookback = 0;
   sort.pass = (sort.pass + 1) % 4;
   for (uint digit = 0; digit < SORT_DIGITS; ++digit) sort.keys_out[digit % sort.count] >>= sort.pass;
 }
@@ -163,6 +178,21 @@ std::vector<Fault> faults() {
        faulty<&stages::sort_digit_scan,
               [](const void* args) { ++args_of<SortDigitScanArgs>(args).histogram[255]; }>()},
       {"sort_pass", "keys_b", faulty<&stages::sort_pass, wrong_shift>()},
+      {"sort_tile_counts", "sort_digits",
+       faulty<&stages::sort_tile_counts,
+              [](const void* args) { --args_of<SortScatterArgs>(args).tile_digits[0]; }>(),
+       DeviceBuilder::ploc, false},
+      {"sort_tile_scan", "sort_digits",
+       faulty<&stages::sort_tile_scan,
+              [](const void* args) { ++args_of<SortTileScanArgs>(args).tile_digits[2047]; }>(),
+       DeviceBuilder::ploc, false},
+      {"sort_scatter", "keys_a",
+       faulty<&stages::sort_scatter,
+              [](const void* args) {
+                const auto a = args_of<SortScatterArgs>(args);
+                ++a.keys_out[a.count];  // one past the end
+              }>(),
+       DeviceBuilder::ploc, false},
       {"ploc_leaves", "clusters_even",
        faulty<&stages::ploc_leaves,
               [](const void* args) {
@@ -192,6 +222,7 @@ TEST_F(Lockstep, NamesAPlantedFaultByStageAndSlot) {
   for (const Fault& fault : faults()) {
     BuildOptions options;
     options.builder = fault.builder;
+    options.lookback = fault.lookback;
     const auto difference = build_in_lockstep(triangles, options, [&](std::vector<Step>& steps) {
       for (Step& step : steps) {
         if (step.stage && std::string_view(step.stage->name) == fault.stage) step.stage = &fault.declaration;

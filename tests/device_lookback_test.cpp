@@ -85,16 +85,16 @@ TEST_F(DeviceLookback, AboutSixtyFourTilesOfAMerge) {
 TEST_F(DeviceLookback, ThreeHundredTilesOfAMerge) { expect_right_trees(300, PLOC_MERGE_TILE); }
 
 TEST_F(DeviceLookback, OneToThreeTilesOfASort) {
-  for (const std::uint32_t tiles : {1u, 2u, 3u}) expect_right_trees(tiles, SORT_TILE);
+  for (const std::uint32_t tiles : {1u, 2u, 3u}) expect_right_trees(tiles, SORT_RUNS_TILE);
 }
 
 TEST_F(DeviceLookback, AboutSixtyFourTilesOfASort) {
-  for (const std::uint32_t tiles : {64u, 66u}) expect_right_trees(tiles, SORT_TILE);
+  for (const std::uint32_t tiles : {64u, 66u}) expect_right_trees(tiles, SORT_RUNS_TILE);
 }
 
 // Where all words end as they do in an undisturbed run, they and everything else equal the twins' bits.
 TEST_F(DeviceLookback, ReversedTilesLeaveTheSameBitsAsTheTwins) {
-  const std::vector<Triangle> triangles = triangles_of(20, SORT_TILE);
+  const std::vector<Triangle> triangles = triangles_of(20, SORT_RUNS_TILE);
   Layout layout(test_device().properties().max_block_bytes);
   const BuildPlan plan =
       plan_build(layout, static_cast<std::uint32_t>(triangles.size()), stressed(LOOKBACK_REVERSED));
@@ -108,7 +108,7 @@ TEST_F(DeviceLookback, ReversedTilesLeaveTheSameBitsAsTheTwins) {
 // succeeds.
 
 TEST_F(DeviceLookback, WithheldWordsCannotBeHadWithoutFallback) {
-  const std::vector<Triangle> triangles = triangles_of(20, SORT_TILE);
+  const std::vector<Triangle> triangles = triangles_of(20, SORT_RUNS_TILE);
   for (const std::uint32_t bits : {LOOKBACK_WITHHELD, silent(1)}) {
     BuildOptions options = stressed(bits);
     options.lookback_max_fallbacks = 0;
@@ -125,7 +125,7 @@ TEST_F(DeviceLookback, ReversedTilesCannotDoWithoutFallbackOnFewThreads) {
   }
   BuildOptions options = stressed(LOOKBACK_REVERSED);
   options.lookback_max_fallbacks = 0;
-  expect_error(triangles_of(20, SORT_TILE), options, "sort_pass");
+  expect_error(triangles_of(20, SORT_RUNS_TILE), options, "sort_pass");
 }
 
 // --- Too many tiles that do not report.
@@ -149,7 +149,7 @@ TEST_F(DeviceLookback, OneMoreSilentTileOfAMergeIsAnErrorByName) {
 
 TEST_F(DeviceLookback, AlmostAsManySilentTilesOfASortAsFallbacksAreStillRightAndMoreAreAnErrorByName) {
   const std::uint32_t most = loops_end_by_themselves() ? 16 : 64;
-  const std::vector<Triangle> triangles = triangles_of(most + 5, SORT_TILE);
+  const std::vector<Triangle> triangles = triangles_of(most + 5, SORT_RUNS_TILE);
   BuildOptions options = stressed(silent(most - late_tiles));
   options.lookback_max_fallbacks = most;
   EXPECT_EQ(tree_hash(build_on(test_device(), triangles, options).nodes),

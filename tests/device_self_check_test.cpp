@@ -7,7 +7,6 @@
 
 #include "interface/lookback.h"
 #include "interface/ploc.h"
-#include "interface/sort.h"
 #include "pipeline/self_check.h"
 #include "support/test_device.h"
 
@@ -27,7 +26,7 @@ Args args_of(const Step& step) {
 
 bool uses_lookback(const std::vector<Step>& steps) {
   return std::any_of(steps.begin(), steps.end(), [](const Step& step) {
-    return is_stage(step, "sort_pass") && args_of<SortPassArgs>(step).lookback != 0;
+    return is_stage(step, "ploc_merge") && args_of<PlocMergeArgs>(step).lookback != 0;
   });
 }
 
@@ -41,17 +40,20 @@ void search_too_near(std::vector<Step>& steps) {
   }
 }
 
-TEST_F(SelfCheck, PassesOnTheTestDevice) { EXPECT_TRUE(check_lookback(test_device())); }
+TEST_F(SelfCheck, PassesOnTheTestDevice) {
+  EXPECT_TRUE(check_lookback(test_device(), {}));
+  EXPECT_TRUE(check_lookback(test_device(), default_variants(test_device().properties())));
+}
 
 TEST_F(SelfCheck, DoesWithoutLookbackWhereItGivesAnotherTree) {
-  EXPECT_FALSE(check_lookback(test_device(), [](std::vector<Step>& steps) {
+  EXPECT_FALSE(check_lookback(test_device(), {}, [](std::vector<Step>& steps) {
     if (uses_lookback(steps)) search_too_near(steps);
   }));
 }
 
 TEST_F(SelfCheck, DoesWithoutLookbackWhereItEndsWithAnError) {
   bool stressed = false;
-  EXPECT_FALSE(check_lookback(test_device(), [&](std::vector<Step>& steps) {
+  EXPECT_FALSE(check_lookback(test_device(), {}, [&](std::vector<Step>& steps) {
     for (Step& step : steps) {
       if (!is_stage(step, "ploc_merge") || args_of<PlocMergeArgs>(step).lookback == 0) continue;
       step.specialization = {0, 0, 1u << LOOKBACK_SILENT_SHIFT};  // no poll, no fallback, a silent tile
@@ -63,7 +65,7 @@ TEST_F(SelfCheck, DoesWithoutLookbackWhereItEndsWithAnError) {
 
 TEST_F(SelfCheck, RefusesByNameADeviceThatIsWrongEitherWay) {
   try {
-    check_lookback(test_device(), search_too_near);
+    check_lookback(test_device(), {}, search_too_near);
     FAIL() << "not refused";
   } catch (const DeviceError& error) {
     const std::string what = error.what();

@@ -62,9 +62,9 @@ TEST(Traffic, OfABuildWithLookback) {
 TEST(Traffic, OfABuildWithoutLookbackAndWith60Bits) {
   auto bytes = bytes_of({.radius = 8, .morton_bits = 60, .lookback = false});
   EXPECT_EQ(bytes["morton_codes"], 720000u);
-  EXPECT_EQ(bytes["sort_pass"], 8u * (480000 + 2 * 1024));
-  EXPECT_EQ(bytes["sort_tile_counts"], 8u * (80000 + 2 * 1024));
-  EXPECT_EQ(bytes["sort_tile_scan"], 8u * 2 * 2048);
+  EXPECT_EQ(bytes["sort_tile_counts"], 6u * (80000 + 2 * 8192));  // 6 passes, 2 tiles, 2,048 digits
+  EXPECT_EQ(bytes["sort_tile_scan"], 6u * 2 * 2 * 8192);
+  EXPECT_EQ(bytes["sort_scatter"], 6u * (480000 + 2 * 2 * 8192));
   EXPECT_EQ(bytes["ploc_nearest"], 19000u * 36 + 19000 / 2 + 3000 * 4);
   EXPECT_EQ(bytes["ploc_tile_counts"], 4u * 22000 + 8 * 22);
   EXPECT_EQ(bytes["ploc_tile_scan"], 24u * 22);

@@ -62,58 +62,51 @@ bool is_sorted_stably(const GpuExecutor& executor, const BuildPlan& plan, const 
 
 Slot<uvec4> quads_of(const Slot<uint>& slot) { return {slot.place, slot.bytes() / sizeof(uvec4)}; }
 
-struct SortInput {
-  const char* preset;
-  std::uint32_t key_words;
-  bool has_values;
+std::string sort_name(std::uint32_t key_words, bool has_values) {
+  return std::string(has_values ? "sort_pairs_" : "sort_keys_") + (key_words == 1 ? "32" : "64");
+}
 
-  std::string name() const {
-    return std::string(has_values ? "sort_pairs_" : "sort_keys_") + (key_words == 1 ? "32" : "64");
-  }
-};
+}  // namespace
 
-BenchRow bench_keys(CheckedDevice& device, const Options& options, const SortInput& input,
-                    std::uint32_t count) {
+BenchRow bench_keys(CheckedDevice& device, const Options& options, std::uint32_t count, std::uint32_t key_words,
+                    bool has_values, const std::string& preset) {
   Layout layout(device.device.properties().max_block_bytes);
   const BuildPlan plan =
-      plan_sort(layout, count, device.build_options(options, 30 * input.key_words), input.has_values);
+      plan_sort(layout, count, device.build_options(options, 30 * key_words), has_values);
   const auto given_keys = layout.add<uint>("given_keys", plan.keys[0].count);
   const auto given_values = layout.add<uint>("given_values", plan.values[0].count);
   GpuExecutor executor(device.device, layout);
-  const std::vector<uint> keys = keys_of(input.preset, count, input.key_words);
+  const std::vector<uint> keys = keys_of(preset, count, key_words);
   std::vector<uint> values(given_values.count);
   std::iota(values.begin(), values.end(), 0u);
   executor.upload(given_keys, std::span<const uint>(keys));
   executor.upload(given_values, std::span<const uint>(values));
 
   Chain chain = executor.chain();  // the sort ends where it began, so each run fetches its keys anew
-  append_copy(chain, {quads_of(given_keys), quads_of(plan.keys[0])}, 2 * given_keys.bytes());
-  append_copy(chain, {quads_of(given_values), quads_of(plan.values[0])}, 2 * given_values.bytes());
+  append_copy(chain, {quads_of(given_keys), quads_of(plan.unsorted_keys)}, 2 * given_keys.bytes());
+  append_copy(chain, {quads_of(given_values), quads_of(plan.unsorted_values)}, 2 * given_values.bytes());
   chain.mark();
   append_sort(chain, plan);
   Recorder recorder = executor.record(chain.steps());
   recorder.submit_and_wait(limit_seconds);
   check_state(executor, plan);
-  if (!is_sorted_stably(executor, plan, keys, input.key_words))
-    throw DeviceError(input.name() + " of " + std::to_string(count) + " keys, " + input.preset +
+  if (!is_sorted_stably(executor, plan, keys, key_words))
+    throw DeviceError(sort_name(key_words, has_values) + " of " + std::to_string(count) + " keys, " + preset +
                       ": wrong order");
   const auto run = [&] {
     const Recorder::Times times = recorder.submit_and_wait(limit_seconds);
     return times.total_ms - times.marks_ms.at(0);
   };
-  return bench_row(input.name(), input.preset, count, measure_steady(steady_options(options, run()), run));
+  return bench_row(sort_name(key_words, has_values), preset, count, measure_steady(steady_options(options, run()), run));
 }
-
-}  // namespace
 
 void bench_sort(CheckedDevice& device, const Options& options, const AddRow& add) {
   for (const bool has_values : {true, false}) {
     for (const std::uint32_t key_words : {1u, 2u}) {
       for (const char* preset : {"random", "few-bits", "all-equal", "sorted"}) {
-        const SortInput input{preset, key_words, has_values};
-        if (!is_wanted(options, input.name(), preset)) continue;
+        if (!is_wanted(options, sort_name(key_words, has_values), preset)) continue;
         for (const std::uint32_t count : bench_sizes(1024, std::max(options.most / 4 * 4, 4u)))
-          add(bench_keys(device, options, input, count));
+          add(bench_keys(device, options, count, key_words, has_values, preset));
       }
     }
   }

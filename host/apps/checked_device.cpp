@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "pipeline/self_check.h"
+#include "pipeline/variant_table.h"
 #include "scene/input_error.h"
 
 namespace coppice {
@@ -14,6 +15,7 @@ BuildOptions CheckedDevice::build_options(const Options& options, std::uint32_t 
   build.radius = options.radius;
   build.morton_bits = morton_bits;
   build.lookback = lookback;
+  build.variants = variants;
   if (const NamedDeviceBuilder* named = find_device_builder(options.builder)) build.builder = named->builder;
   return build;
 }
@@ -50,12 +52,16 @@ bool CheckedDevice::walks_wide(const Options& options, std::uint32_t triangle_co
 }
 
 CheckedDevice open_device(const Options& options) {
-  CheckedDevice checked{Device({options.device, options.validate, false, cache_folder()}), true};
+  CheckedDevice checked{Device({options.device, options.validate, false, cache_folder()}), true, {}};
   if (!checked.device.has_kept_pipelines() && isatty(STDERR_FILENO)) {
     std::fprintf(stderr, "note: compiling the kernels for %s, as no earlier run has left them\n",
                  checked.device.properties().name.c_str());
   }
-  const bool works = check_lookback(checked.device);
+  checked.variants = options.variants == "auto" ? variants_of(checked.device)
+                                                : default_variants(checked.device.properties());
+  if (options.variants != "auto" && options.variants != "default")
+    set_variants(options.variants, checked.variants);
+  const bool works = check_lookback(checked.device, checked.variants);
   checked.lookback = options.lookback == "auto" ? works : options.lookback == "on";
   return checked;
 }

@@ -10,6 +10,7 @@ namespace coppice {
 struct CheckedDevice {
   Device device;
   bool lookback;
+  Variants variants;
 
   // `morton_bits`: 30 or 60, see morton_bits_for.
   BuildOptions build_options(const Options& options, std::uint32_t morton_bits) const;

@@ -40,6 +40,7 @@ ComparisonRow measure(const std::string& scene, const std::string& builder, cons
   add("--triangle-test", options.triangle_test);
   add("--box-test", options.box_test);
   add("--morton-bits", options.morton_bits);
+  add("--variants", options.variants);
   if (!options.device.empty()) add("--device", options.device);
   const ChildResult child = run_self(arguments, options.timeout_seconds);
   ComparisonRow row;

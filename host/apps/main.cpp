@@ -110,6 +110,16 @@ void add_ploc(CLI::App& command, Options& options) {
                   "prefix sums by decoupled lookback; auto: where the self-check allows it")
       ->check(CLI::IsMember({"auto", "on", "off"}))
       ->capture_default_str();
+  command
+      .add_option(
+          "--variants", options.variants,
+          "of stages that have some; auto: as tuned, or else default, which goes by the kind of device")
+      ->type_name("auto|default|STAGE=VALUE,...")
+      ->check([](const std::string& text) {
+        coppice::Variants variants;
+        return text == "auto" || text == "default" ? std::string() : coppice::set_variants(text, variants);
+      })
+      ->capture_default_str();
 }
 
 void add_tree(CLI::App& command, Options& options) {
@@ -199,6 +209,16 @@ void add_bench(CLI::App& command, Options& options) {
   add_device(command, options);
 }
 
+void add_tune(CLI::App& command, Options& options) {
+  command.add_option("--most", options.most, "keys that the sort is measured on")
+      ->check(CLI::Range(4u, 1u << 26))
+      ->capture_default_str();
+  command.add_option("--runs", options.runs, "of each variant, after a warm-up until the median is stable")
+      ->check(CLI::Range(1u, 10000u))
+      ->capture_default_str();
+  add_device(command, options);
+}
+
 int run(int argc, char** argv) {
   Options options;
   CLI::App app("GPU-resident BVH builder and ray tracer");
@@ -242,6 +262,9 @@ int run(int argc, char** argv) {
   CLI::App* const bench =
       app.add_subcommand("bench", "times of sort, scan, PLOC, build or trace, results checked first");
   add_bench(*bench, options);
+  CLI::App* const tune =
+      app.add_subcommand("tune", "measure the variants of stages on this device, and keep the fastest");
+  add_tune(*tune, options);
   for (CLI::App* const command : {render, lockstep, compare, bench}) add_intersection(*command, options);
   for (CLI::App* const command : {render, lockstep}) add_tree(*command, options);
   for (CLI::App* const command : {render, compare})
@@ -260,7 +283,7 @@ int run(int argc, char** argv) {
   CLI::App* const scenes = app.add_subcommand("scenes", "the built-in scenes");
   scenes->add_flag("--hard", options.hard, "the inputs that are hard on builders and tracers instead");
   CLI::App* const devices = app.add_subcommand("devices", "the Vulkan devices");
-  for (CLI::App* const command : {render, build, lockstep, compare, stability, bench, scenes, devices})
+  for (CLI::App* const command : {render, build, lockstep, compare, stability, bench, tune, scenes, devices})
     add_common(*command, options);
 
   try {
@@ -285,6 +308,7 @@ int run(int argc, char** argv) {
   if (*compare) return run_compare(options);
   if (*stability) return run_stability(options);
   if (*bench) return run_bench(options);
+  if (*tune) return run_tune(options);
   if (*scenes) return run_scenes(options);
   return run_devices(options);
 }

@@ -25,6 +25,7 @@ struct Options {
   std::uint32_t frames = 1;          // of `render`: the whole frame so many times
   bool kernels = false;              // of `render`: once more, to print the time of every kernel
   std::string lookback = "auto";     // auto, on, off
+  std::string variants = "auto";     // auto, default, STAGE=VALUE,...
 
   std::string bench;              // one of benches()
   std::uint32_t most = 1u << 20;  // of `bench`: keys or triangles of the largest size
@@ -59,6 +60,7 @@ int run_lockstep(const Options& options);
 int run_compare(const Options& options);
 int run_stability(const Options& options);
 int run_bench(const Options& options);
+int run_tune(const Options& options);
 int run_scenes(const Options& options);
 int run_devices(const Options& options);
 

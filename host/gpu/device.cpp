@@ -253,6 +253,11 @@ const DeviceProperties& Device::properties() const { return context_->properties
 
 bool Device::has_kept_pipelines() const { return !context_->kept_pipelines.empty(); }
 
+std::filesystem::path Device::kept_file(std::string_view stem) const {
+  if (context_->pipeline_file.empty()) return {};
+  return context_->pipeline_file.parent_path() / file_name_of(stem, context_->physical);
+}
+
 std::filesystem::path cache_folder() {
   // The XDG specification says that a relative path is to be ignored.
   const char* const xdg = std::getenv("XDG_CACHE_HOME");

@@ -5,6 +5,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace coppice {
@@ -68,6 +69,9 @@ class Device {
 
   // Whether the pipelines of an earlier run are at hand; false where none are kept.
   bool has_kept_pipelines() const;
+
+  // A file beside the pipelines for what else is kept of this device and driver; empty where nothing is kept.
+  std::filesystem::path kept_file(std::string_view stem) const;
 
   VulkanContext& context() { return *context_; }
 

@@ -40,13 +40,6 @@ std::string hexadecimal(const Uuid& uuid) {
   return text;
 }
 
-fs::path file_in(const fs::path& folder, const VulkanContext& context) {
-  const auto properties =
-      context.physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceIDProperties>();
-  const auto& id = properties.get<vk::PhysicalDeviceIDProperties>();
-  return folder / ("pipelines-" + hexadecimal(id.deviceUUID) + "-" + hexadecimal(id.driverUUID));
-}
-
 // Whether the driver that runs made the blob, by the header that Vulkan prescribes.
 bool is_of_this_driver(const std::vector<std::uint8_t>& blob, const vk::PhysicalDeviceProperties& device) {
   VkPipelineCacheHeaderVersionOne header;
@@ -87,9 +80,16 @@ void write_blob(const fs::path& path, const std::vector<std::uint8_t>& blob) {
 
 }  // namespace
 
+std::string file_name_of(std::string_view stem, const vk::raii::PhysicalDevice& physical) {
+  const auto properties =
+      physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceIDProperties>();
+  const auto& id = properties.get<vk::PhysicalDeviceIDProperties>();
+  return std::string(stem) + "-" + hexadecimal(id.deviceUUID) + "-" + hexadecimal(id.driverUUID);
+}
+
 void load_pipelines(VulkanContext& context, const fs::path& folder) {
   if (folder.empty()) return;
-  context.pipeline_file = file_in(folder, context);
+  context.pipeline_file = folder / file_name_of("pipelines", context.physical);
   context.kept_pipelines = read_blob(context.pipeline_file, context.physical.getProperties());
   const std::vector<std::uint8_t>& blob = context.kept_pipelines;
   context.pipeline_cache = vk::raii::PipelineCache(context.device, {{}, blob.size(), blob.data()});

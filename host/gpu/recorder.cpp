@@ -11,18 +11,23 @@ namespace coppice {
 namespace {
 
 // Local size in x, from the kernel's execution mode: literal, or the id of a constant (LocalSizeId,
-// SPIR-V 1.6). 0 for a kernel whose workgroup is one subgroup: then it is a specialization constant.
-std::uint32_t local_size_x(std::span<const std::uint32_t> spirv) {
+// SPIR-V 1.6) that may be a specialization constant. 0 for a kernel whose workgroup is one subgroup.
+std::uint32_t local_size_x(const Kernel& kernel) {
   constexpr std::uint32_t op_execution_mode = 16, op_execution_mode_id = 331, op_constant = 43,
-                          op_spec_constant = 50;
-  constexpr std::uint32_t mode_local_size = 17, mode_local_size_id = 38;
-  std::uint32_t constant_id = 0;
+                          op_spec_constant = 50, op_decorate = 71;
+  constexpr std::uint32_t mode_local_size = 17, mode_local_size_id = 38, decoration_spec_id = 1;
+  const std::span<const std::uint32_t> spirv = kernel.spirv;
+  std::uint32_t constant = 0, spec_id = 0;
   for (std::size_t i = 5; i < spirv.size(); i += spirv[i] >> 16) {
     const std::uint32_t op = spirv[i] & 0xffff;
     if (op == op_execution_mode && spirv[i + 2] == mode_local_size) return spirv[i + 3];
-    if (op == op_execution_mode_id && spirv[i + 2] == mode_local_size_id) constant_id = spirv[i + 3];
-    if (op == op_constant && constant_id != 0 && spirv[i + 2] == constant_id) return spirv[i + 3];
-    if (op == op_spec_constant && constant_id != 0 && spirv[i + 2] == constant_id) return 0;
+    if (op == op_execution_mode_id && spirv[i + 2] == mode_local_size_id) constant = spirv[i + 3];
+    if (constant == 0) continue;
+    if (op == op_decorate && spirv[i + 1] == constant && spirv[i + 2] == decoration_spec_id)
+      spec_id = spirv[i + 3];
+    if (op == op_constant && spirv[i + 2] == constant) return spirv[i + 3];
+    if (op == op_spec_constant && spirv[i + 2] == constant)
+      return spec_id < kernel.specialization.size() ? kernel.specialization[spec_id] : 0;
   }
   throw std::logic_error("kernel without a local size");
 }
@@ -42,7 +47,7 @@ vk::raii::Pipeline make_pipeline(const VulkanContext& context, const Kernel& ker
   const vk::SpecializationInfo specialization(static_cast<std::uint32_t>(entries.size()), entries.data(),
                                               constants.size() * 4, constants.data());
   // Kernels that rank by subgroup need whole ones; the others have no size that subgroups must divide.
-  const bool whole = local_size_x(kernel.spirv) % context.properties.subgroup_size == 0;
+  const bool whole = local_size_x(kernel) % context.properties.subgroup_size == 0;
   const auto flags = whole ? vk::PipelineShaderStageCreateFlagBits::eRequireFullSubgroups
                            : vk::PipelineShaderStageCreateFlags();
   const vk::PipelineShaderStageCreateInfo stage(flags, vk::ShaderStageFlagBits::eCompute, *module, "main",

@@ -11,8 +11,9 @@ namespace coppice {
 namespace {
 
 // max_triangles is what one dispatch of the smallest tile reaches.
-static_assert(std::min({PRIMITIVE_BOUNDS_TILE, MORTON_TILE, SORT_HISTOGRAM_TILE, SORT_TILE, PLOC_LEAVES_TILE,
-                        PLOC_MERGE_TILE}) >= PLOC_NEAREST_TILE);
+static_assert(std::min({PRIMITIVE_BOUNDS_TILE, MORTON_TILE, SORT_HISTOGRAM_TILE, SORT_RUNS_TILE,
+                        SORT_MATCH_TILE, SORT_SCAN_TILE, PLOC_LEAVES_TILE, PLOC_MERGE_TILE}) >=
+              PLOC_NEAREST_TILE);
 
 uvec3 tiles(std::uint32_t count, std::uint32_t tile, std::uint32_t rows = 1) {
   return {count / tile + (count % tile != 0), rows, 1};
@@ -27,8 +28,8 @@ void append_bounds(Chain& chain, const BuildPlan& plan) {
 void append_morton_codes(Chain& chain, const BuildPlan& plan) {
   const std::uint32_t n = plan.triangle_count;
   chain.run(stages::morton_codes,
-            {chain.at(plan.boxes), chain.at(plan.state), chain.at(plan.keys[0]), chain.at(plan.values[0]), n,
-             plan.options.morton_bits / 30},
+            {chain.at(plan.boxes), chain.at(plan.state), chain.at(plan.unsorted_keys),
+             chain.at(plan.unsorted_values), n, plan.options.morton_bits / 30},
             tiles(n, MORTON_TILE));
 }
 
@@ -38,38 +39,61 @@ void clear_sort(Chain& chain, const BuildPlan& plan) {
   chain.clear(plan.sort_tickets);
 }
 
-void append_sort_passes(Chain& chain, const BuildPlan& plan) {
+bool has_values(const BuildPlan& plan) { return plan.values[0].count > 0; }
+
+// None of keys alone.
+Address<uint> values_at(const Chain& chain, const BuildPlan& plan, int side) {
+  return has_values(plan) ? chain.at(plan.values[side]) : Address<uint>{};
+}
+
+void append_onesweep(Chain& chain, const BuildPlan& plan) {
   const std::uint32_t n = plan.triangle_count, key_words = plan.options.morton_bits / 30;
-  const std::uint32_t passes = key_words * SORT_PASSES_PER_WORD;
-  chain.run(stages::sort_histogram, {chain.at(plan.keys[0]), chain.at(plan.histogram), n, key_words},
+  const SortPlan& sort = plan.sort;
+  chain.run(stages::sort_histogram, {chain.at(plan.unsorted_keys), chain.at(plan.histogram), n, key_words},
             tiles(n, SORT_HISTOGRAM_TILE, key_words));
-  chain.run(stages::sort_digit_scan, {chain.at(plan.histogram), passes, 0}, {passes, 1, 1});
-  const uvec3 pass_groups = tiles(n, SORT_TILE);
-  const bool has_values = plan.values[0].count > 0;
-  const auto values = [&](int side) { return has_values ? chain.at(plan.values[side]) : Address<uint>{}; };
+  chain.run(stages::sort_digit_scan, {chain.at(plan.histogram), sort.passes, 0}, {sort.passes, 1, 1});
   std::vector<std::uint32_t> constants = lookback_constants(plan.options);
-  constants.push_back(has_values);
-  for (std::uint32_t pass = 0; pass < passes; ++pass) {
-    const int in = pass % 2, out = 1 - in;
-    const auto status = chain.at(plan.sort_status, std::uint64_t{pass} * pass_groups.x * SORT_DIGITS);
-    const SortPassArgs args{chain.at(plan.keys[in]),
-                            values(in),
-                            chain.at(plan.keys[out]),
-                            values(out),
-                            chain.at(plan.histogram, pass * SORT_DIGITS),
-                            status,
-                            chain.at(plan.sort_tickets, pass),
-                            chain.at(plan.state),
-                            n,
-                            key_words,
-                            pass,
-                            plan.options.lookback};
-    if (!plan.options.lookback) {
-      chain.run(stages::sort_tile_counts, args, pass_groups);
-      chain.run(stages::sort_tile_scan, {status, pass_groups.x, 0}, {1, 1, 1});
-    }
-    chain.run(stages::sort_pass, args, pass_groups, constants);
+  constants.insert(constants.end(),
+                   {sort.match, sort.match ? SORT_MATCH_GROUP : SORT_RUNS_GROUP, has_values(plan)});
+  for (std::uint32_t pass = 0; pass < sort.passes; ++pass) {
+    const int in = (sort.passes - pass) % 2, out = 1 - in;
+    chain.run(stages::sort_pass,
+              {chain.at(plan.keys[in]), values_at(chain, plan, in), chain.at(plan.keys[out]),
+               chain.at(plan.values[out]), chain.at(plan.histogram, pass * SORT_DIGITS),
+               chain.at(plan.sort_status, std::uint64_t{pass} * sort.tile_count * SORT_DIGITS),
+               chain.at(plan.sort_tickets, pass), chain.at(plan.state), n, key_words, pass, sort.tile_keys},
+              {sort.tile_count, 1, 1}, constants);
   }
+}
+
+void append_scanned_sort(Chain& chain, const BuildPlan& plan) {
+  const SortPlan& sort = plan.sort;
+  const std::uint32_t key_words = plan.options.morton_bits / 30, bits = sort.digit_bits;
+  for (std::uint32_t pass = 0; pass < sort.passes; ++pass) {
+    const int in = (sort.passes - pass) % 2, out = 1 - in;
+    const SortScatterArgs args{chain.at(plan.keys[in]),
+                               chain.at(plan.values[in]),
+                               chain.at(plan.keys[out]),
+                               chain.at(plan.values[out]),
+                               chain.at(plan.sort_digits),
+                               plan.triangle_count,
+                               key_words,
+                               pass / sort.passes_per_word,
+                               pass % sort.passes_per_word * bits,
+                               bits,
+                               sort.tile_keys};
+    chain.run(stages::sort_tile_counts, args, {sort.tile_count, 1, 1}, {bits, key_words});
+    chain.run(stages::sort_tile_scan, {args.tile_digits, sort.tile_count, bits},
+              {std::min(sort.tile_count, 1u), 1, 1}, {bits});
+    chain.run(stages::sort_scatter, args, {sort.tile_count, 1, 1}, {bits, key_words, has_values(plan)});
+  }
+}
+
+void append_sort_passes(Chain& chain, const BuildPlan& plan) {
+  if (plan.sort.onesweep)
+    append_onesweep(chain, plan);
+  else
+    append_scanned_sort(chain, plan);
 }
 
 void append_round(Chain& chain, const BuildPlan& plan, std::uint32_t round) {

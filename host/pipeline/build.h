@@ -8,6 +8,7 @@
 #include "interface/ploc.h"
 #include "interface/types.h"
 #include "interface/wide.h"
+#include "pipeline/variants.h"
 #include "stages/chain.h"
 #include "stages/layout.h"
 
@@ -38,6 +39,17 @@ struct BuildOptions {
   std::uint32_t lookback_max_fallbacks = 64;  // a tile that would have to sum up more of them gives up
   std::uint32_t lookback_stress = 0;          // bits of interface/lookback.h, for tests
   DeviceBuilder builder = DeviceBuilder::ploc;
+  Variants variants{};
+};
+
+// How the sort of a plan goes: a pure function of the number of keys and the options.
+struct SortPlan {
+  bool onesweep = false;  // else counting, scanning and scattering
+  bool match = false;     // of Onesweep: ranks by match
+  std::uint32_t digit_bits = 0;
+  std::uint32_t passes_per_word = 0;
+  std::uint32_t passes = 0;
+  std::uint32_t tile_keys = 0, tile_count = 0;
 };
 
 // A scene's triangles and the tree over them, whoever builds it.
@@ -59,8 +71,11 @@ struct BuildPlan : TreeSlots {
   std::uint32_t recorded_rounds = 0;  // of them, those that may come before the finish
 
   Slot<Aabb> boxes;
-  Slot<uint> keys[2], values[2];
-  Slot<uint> histogram, sort_status, sort_tickets;
+  SortPlan sort;
+  Slot<uint> keys[2], values[2];                    // [0] in the end: in order
+  Slot<uint> unsorted_keys, unsorted_values;        // those of the slots above where the sort begins
+  Slot<uint> histogram, sort_status, sort_tickets;  // of Onesweep
+  Slot<uint> sort_digits;                           // else
 
   Slot<Node> clusters[2];  // of PLOC of even and odd rounds; H-PLOC and LBVH have one list
 
@@ -93,7 +108,7 @@ BuildPlan plan_build(Layout& layout, std::uint32_t triangle_count, const BuildOp
 BuildPlan plan_sort(Layout& layout, std::uint32_t key_count, const BuildOptions& options,
                     bool has_values = true);
 
-// The pairs in keys[0] and values[0], or the keys alone, sorted stably by key, in place.
+// The pairs in unsorted_keys and unsorted_values, or the keys alone, sorted stably by key, to keys[0] and values[0].
 void append_sort(Chain& chain, const BuildPlan& plan);
 
 // Triangles to tree: bounds, Morton codes, sort, and the builder of the options.

@@ -29,12 +29,48 @@ void add_hploc_slots(Layout& layout, BuildPlan& plan) {
   plan.arrivals = layout.add<uint>("arrivals", plan.triangle_count);
 }
 
-void add_sort_status(Layout& layout, BuildPlan& plan) {
-  const std::uint32_t passes = plan.options.morton_bits / 30 * SORT_PASSES_PER_WORD;
-  plan.histogram = layout.add<uint>("histogram", passes * SORT_DIGITS);
-  plan.sort_status = layout.add<uint>(
-      "sort_status", std::uint64_t{passes} * divide_up(plan.triangle_count, SORT_TILE) * SORT_DIGITS);
-  plan.sort_tickets = layout.add<uint>("sort_tickets", passes);
+constexpr std::uint32_t wide_digit_keys = 1u << 18;  // above, so many digits at once miss the caches
+constexpr std::uint32_t most_scanned_tiles = 1024;
+
+SortPlan plan_passes(std::uint32_t key_count, const BuildOptions& options) {
+  const std::uint32_t variant = options.variants.sort;
+  SortPlan sort;
+  sort.match = variant == SORT_ONESWEEP_MATCH;
+  sort.onesweep = options.lookback && (sort.match || variant == SORT_ONESWEEP_RUNS);
+  if (sort.onesweep) {
+    sort.digit_bits = SORT_DIGIT_BITS;
+    sort.tile_keys = sort.match ? SORT_MATCH_TILE : SORT_RUNS_TILE;
+  } else {
+    const bool by_size = variant != SORT_SCAN_8 && variant != SORT_SCAN_11;
+    const bool wide = by_size ? key_count <= wide_digit_keys : variant == SORT_SCAN_11;
+    sort.digit_bits = wide ? SORT_WIDE_BITS : SORT_NARROW_BITS;
+    sort.tile_keys = SORT_SCAN_TILE;
+    while (divide_up(key_count, sort.tile_keys) > most_scanned_tiles) sort.tile_keys *= 2;
+  }
+  sort.tile_count = divide_up(key_count, sort.tile_keys);
+  sort.passes_per_word = divide_up(32, sort.digit_bits);
+  sort.passes = options.morton_bits / 30 * sort.passes_per_word;
+  return sort;
+}
+
+void add_sort_slots(Layout& layout, BuildPlan& plan, bool has_values = true) {
+  const std::uint32_t n = plan.triangle_count;
+  const std::uint32_t key_words = plan.options.morton_bits / 30;
+  const SortPlan& sort = plan.sort = plan_passes(n, plan.options);
+  for (int i = 0; i < 2; ++i) {
+    plan.keys[i] = layout.add<uint>(i ? "keys_b" : "keys_a", std::uint64_t{n} * key_words);
+    plan.values[i] = layout.add<uint>(i ? "values_b" : "values_a", has_values ? n : 0);
+  }
+  plan.unsorted_keys = plan.keys[sort.passes % 2];
+  plan.unsorted_values = plan.values[sort.passes % 2];
+  const std::uint64_t tile_digits = std::uint64_t{sort.tile_count} << sort.digit_bits;
+  if (sort.onesweep) {
+    plan.histogram = layout.add<uint>("histogram", sort.passes * SORT_DIGITS);
+    plan.sort_status = layout.add<uint>("sort_status", sort.passes * tile_digits);
+    plan.sort_tickets = layout.add<uint>("sort_tickets", sort.passes);
+  } else {
+    plan.sort_digits = layout.add<uint>("sort_digits", tile_digits);
+  }
 }
 
 }  // namespace
@@ -44,12 +80,7 @@ BuildPlan plan_sort(Layout& layout, std::uint32_t key_count, const BuildOptions&
   plan.options = options;
   plan.triangle_count = key_count;
   plan.state = layout.add<BuildState>("state", 1);
-  for (int i = 0; i < 2; ++i) {
-    plan.keys[i] =
-        layout.add<uint>(i ? "keys_b" : "keys_a", std::uint64_t{key_count} * options.morton_bits / 30);
-    plan.values[i] = layout.add<uint>(i ? "values_b" : "values_a", has_values ? key_count : 0);
-  }
-  add_sort_status(layout, plan);
+  add_sort_slots(layout, plan, has_values);
   return plan;
 }
 
@@ -84,16 +115,11 @@ BuildPlan plan_build(Layout& layout, std::uint32_t triangle_count, const BuildOp
   }
   BuildPlan plan;
   const std::uint32_t n = triangle_count;
-  const std::uint32_t key_words = options.morton_bits / 30;
   plan.options = options;
 
   static_cast<TreeSlots&>(plan) = plan_tree(layout, n, n == 0 ? 0 : 2 * std::uint64_t{n} - 1);
   plan.boxes = layout.add<Aabb>("boxes", n);
-  for (int i = 0; i < 2; ++i) {
-    plan.keys[i] = layout.add<uint>(i ? "keys_b" : "keys_a", std::uint64_t{n} * key_words);
-    plan.values[i] = layout.add<uint>(i ? "values_b" : "values_a", n);
-  }
-  add_sort_status(layout, plan);
+  add_sort_slots(layout, plan);
   if (options.builder == DeviceBuilder::ploc)
     add_ploc_slots(layout, plan);
   else

@@ -29,10 +29,12 @@ std::vector<Triangle> scattered_triangles() {
   return triangles;
 }
 
-bool builds_right(Device& device, bool lookback, const std::function<void(std::vector<Step>&)>& fault) {
+bool builds_right(Device& device, const Variants& variants, bool lookback,
+                  const std::function<void(std::vector<Step>&)>& fault) {
   BuildOptions options;
   options.radius = 2;
   options.lookback = lookback;
+  options.variants = variants;
   Layout layout(device.properties().max_block_bytes);
   const BuildPlan plan = plan_build(layout, check_triangles, options);
   const std::vector<Triangle> triangles = scattered_triangles();
@@ -57,9 +59,10 @@ bool builds_right(Device& device, bool lookback, const std::function<void(std::v
 
 }  // namespace
 
-bool check_lookback(Device& device, const std::function<void(std::vector<Step>&)>& fault) {
-  if (builds_right(device, true, fault)) return true;
-  if (builds_right(device, false, fault)) return false;
+bool check_lookback(Device& device, const Variants& variants,
+                    const std::function<void(std::vector<Step>&)>& fault) {
+  if (builds_right(device, variants, true, fault)) return true;
+  if (builds_right(device, variants, false, fault)) return false;
   throw DeviceError("device '" + device.properties().name + "' (" + device.properties().driver +
                     ") computes a wrong tree in the self-check; it is not used");
 }

@@ -18,12 +18,10 @@ const Args* args_of(const Step& step, const Stage<Args>& stage) {
 
 Bytes tiles(Bytes count, Bytes tile) { return (count + tile - 1) / tile; }
 
-constexpr Bytes digit_row = SORT_DIGITS * sizeof(uint);  // a tile's word for each digit
+constexpr Bytes digit_row = SORT_DIGITS * sizeof(uint);  // of Onesweep: a word for each digit
 
-Bytes sort_pass_bytes(const SortPassArgs& args) {
-  // Status words are written as aggregate and as prefix, and read by the next tile; or only read.
-  const Bytes status = digit_row * tiles(args.count, SORT_TILE) * (args.lookback ? 3 : 1);
-  return Bytes{args.count} * 2 * (4 * args.key_words + (args.values_in.value ? 4 : 0)) + status;
+Bytes pairs_moved(Bytes count, Bytes key_words, bool has_values) {
+  return count * 2 * (4 * key_words + (has_values ? 4 : 0));
 }
 
 Bytes prefix_scan_bytes(const PrefixScanArgs& args) {
@@ -32,13 +30,23 @@ Bytes prefix_scan_bytes(const PrefixScanArgs& args) {
   return Bytes{args.quad_count} * 2 * sizeof(uvec4) + status;
 }
 
+// Words of all digits of all tiles, where Onesweep is not used.
+Bytes tile_digits_bytes(const SortScatterArgs& args) {
+  return tiles(args.count, args.tile_keys) * sizeof(uint) << args.digit_bits;
+}
+
 std::optional<Bytes> sort_bytes(const Step& step) {
   if (const auto* a = args_of(step, stages::sort_histogram)) return Bytes{a->count} * 4 * a->key_words;
   if (const auto* a = args_of(step, stages::sort_digit_scan)) return Bytes{a->pass_count} * 2 * digit_row;
-  if (const auto* a = args_of(step, stages::sort_pass)) return sort_pass_bytes(*a);
+  // Status words are written as aggregate and as prefix, and read by the next tile.
+  if (const auto* a = args_of(step, stages::sort_pass))
+    return pairs_moved(a->count, a->key_words, a->values_in.value != 0) + tiles(a->count, a->tile_keys) * 3 * digit_row;
   if (const auto* a = args_of(step, stages::sort_tile_counts))
-    return Bytes{a->count} * 4 + tiles(a->count, SORT_TILE) * digit_row;
-  if (const auto* a = args_of(step, stages::sort_tile_scan)) return Bytes{a->tile_count} * 2 * digit_row;
+    return Bytes{a->count} * 4 + tile_digits_bytes(*a);
+  if (const auto* a = args_of(step, stages::sort_tile_scan))
+    return Bytes{a->tile_count} * 2 * sizeof(uint) << a->digit_bits;
+  if (const auto* a = args_of(step, stages::sort_scatter))
+    return pairs_moved(a->count, a->key_words, a->values_in.value != 0) + 2 * tile_digits_bytes(*a);
   return std::nullopt;
 }
 

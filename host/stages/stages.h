@@ -17,9 +17,10 @@
   STAGE(morton_codes, MortonCodesArgs)          \
   STAGE(sort_histogram, SortHistogramArgs)      \
   STAGE(sort_digit_scan, SortDigitScanArgs)     \
-  STAGE(sort_tile_counts, SortPassArgs)         \
-  STAGE(sort_tile_scan, SortTileScanArgs)       \
   STAGE(sort_pass, SortPassArgs)                \
+  STAGE(sort_tile_counts, SortScatterArgs)      \
+  STAGE(sort_tile_scan, SortTileScanArgs)       \
+  STAGE(sort_scatter, SortScatterArgs)          \
   STAGE(ploc_leaves, PlocLeavesArgs)            \
   STAGE(ploc_nearest, PlocNearestArgs)          \
   STAGE(ploc_tile_counts, PlocMergeArgs)        \

@@ -17,9 +17,9 @@ void sort_pass(const SortPassArgs& args) {
     }
     if (args.values_in.value) args.values_out[place] = args.values_in[i];
 
-    const bool ends_tile = (i + 1) % SORT_TILE == 0 || i + 1 == args.count;
-    if (args.lookback && ends_tile) {
-      leave_inclusive_prefix(args.tile_status, i / SORT_TILE, counts);
+    const bool ends_tile = (i + 1) % args.tile_keys == 0 || i + 1 == args.count;
+    if (ends_tile) {
+      leave_inclusive_prefix(args.tile_status, i / args.tile_keys, counts);
       ++args.ticket[0];
     }
   }

@@ -4,13 +4,14 @@
 
 namespace coppice::twins {
 
-void sort_tile_counts(const SortPassArgs& args) {
-  const uint tiles = (args.count + SORT_TILE - 1) / SORT_TILE;
-  std::fill_n(&args.tile_status[0], std::size_t{tiles} * SORT_DIGITS, 0u);
+void sort_tile_counts(const SortScatterArgs& args) {
+  const uint digits = 1u << args.digit_bits;
+  const uint tiles = (args.count + args.tile_keys - 1) / args.tile_keys;
+  std::fill_n(&args.tile_digits[0], std::size_t{tiles} * digits, 0u);
   for (uint i = 0; i < args.count; ++i) {
-    const uint word = args.keys_in[std::size_t{i} * args.key_words + args.pass / SORT_PASSES_PER_WORD];
-    const uint digit = word >> (args.pass % SORT_PASSES_PER_WORD * SORT_DIGIT_BITS) & (SORT_DIGITS - 1);
-    ++args.tile_status[std::size_t{i / SORT_TILE} * SORT_DIGITS + digit];
+    const uint word = args.keys_in[std::size_t{i} * args.key_words + args.digit_word];
+    const uint digit = word >> args.digit_shift & (digits - 1);
+    ++args.tile_digits[std::size_t{i / args.tile_keys} * digits + digit];
   }
 }
 

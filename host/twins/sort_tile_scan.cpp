@@ -5,11 +5,11 @@
 namespace coppice::twins {
 
 void sort_tile_scan(const SortTileScanArgs& args) {
-  for (uint digit = 0; digit < SORT_DIGITS; ++digit) {
-    uint sum = 0;
+  const uint digits = 1u << args.digit_bits;
+  uint place = 0;
+  for (uint digit = 0; digit < digits; ++digit) {
     for (uint tile = 0; tile < args.tile_count; ++tile) {
-      uint& word = args.tile_status[std::size_t{tile} * SORT_DIGITS + digit];
-      sum += std::exchange(word, sum);
+      place += std::exchange(args.tile_digits[std::size_t{tile} * digits + digit], place);
     }
   }
 }

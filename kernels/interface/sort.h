@@ -1,9 +1,12 @@
-// LSD radix sort of (key, value) pairs, 8-bit digits; keys of one or two words, low word first.
+// LSD radix sort of (key, value) pairs; keys of one or two words, low word first. Two ways to the same order:
+// Onesweep (sort_histogram, sort_digit_scan and a sort_pass a digit), whose tiles get their prefixes by lookback, and
+// counting, scanning and scattering (sort_tile_counts, sort_tile_scan and sort_scatter a digit), which never wait.
 #ifndef COPPICE_INTERFACE_SORT_H
 #define COPPICE_INTERFACE_SORT_H
 #include "types.h"
 INTERFACE_BEGIN
 
+// Of Onesweep.
 const uint SORT_DIGIT_BITS = 8;
 const uint SORT_DIGITS = 256;
 const uint SORT_PASSES_PER_WORD = 4;
@@ -14,10 +17,20 @@ const uint SORT_HISTOGRAM_RUN = 2048;
 const uint SORT_HISTOGRAM_TILE = SORT_HISTOGRAM_GROUP * SORT_HISTOGRAM_RUN;
 const uint SORT_HISTOGRAM_ROW = SORT_PASSES_PER_WORD * SORT_DIGITS / 2;
 
-// One invocation ranks a run of consecutive keys serially: stable, and the fastest on CPU devices.
-const uint SORT_GROUP = 16;
-const uint SORT_RUN = 1024;
-const uint SORT_TILE = SORT_GROUP * SORT_RUN;
+// A pass ranks the keys of a tile in rows of counters, consecutive keys in each. Either an invocation has a row, and
+// ranks its keys one by one; or a subgroup has one, and ranks as many keys at once as it has invocations.
+const uint SORT_MAX_ROWS = 16;
+const uint SORT_RUNS_GROUP = 16;
+const uint SORT_RUNS_TILE = 16384;
+const uint SORT_MATCH_GROUP = 64;  // at least 4 to a subgroup, so at most SORT_MAX_ROWS
+const uint SORT_MATCH_TILE = 4096;
+
+// Of counting, scanning and scattering: the digits have 8 or 11 bits, and a tile, which one subgroup takes, at least
+// SORT_SCAN_TILE keys.
+const uint SORT_NARROW_BITS = 8;
+const uint SORT_WIDE_BITS = 11;
+const uint SORT_SCAN_TILE = 16384;
+const uint SORT_TILE_SCAN_GROUP = 256;
 
 struct SortHistogramArgs {
   UintBuffer keys;       // count * key_words
@@ -32,25 +45,37 @@ struct SortDigitScanArgs {
   uint padding;
 };
 
-// Shared by the passes and, without lookback, by the kernel that counts a tile's digits.
 struct SortPassArgs {
   UintBuffer keys_in, values_in;  // keys alone have no values: null
   UintBuffer keys_out, values_out;
   UintBuffer digit_offsets;        // SORT_DIGITS, of this pass
-  CoherentUintBuffer tile_status;  // tiles * SORT_DIGITS: lookback words; without lookback, digit counts,
-                                   // then their prefixes
+  CoherentUintBuffer tile_status;  // tiles * SORT_DIGITS lookback words
   CoherentUintBuffer ticket;       // one word
   BuildStateBuffer state;          // error word
   uint count;
   uint key_words;
   uint pass;
-  uint lookback;  // 1: tile prefixes by lookback; 0: from sort_tile_counts and sort_tile_scan
+  uint tile_keys;  // SORT_RUNS_TILE or SORT_MATCH_TILE
+};
+
+// Shared by counting and scattering. The digit is that of `digit_bits` bits from bit `digit_shift` of the key's
+// `digit_word`-th word; above bit 31 there are zeroes.
+struct SortScatterArgs {
+  UintBuffer keys_in, values_in;
+  UintBuffer keys_out, values_out;
+  // tiles << digit_bits. sort_tile_counts leaves counts, sort_tile_scan where the first key of each tile and digit
+  // goes, sort_scatter where one more would go.
+  UintBuffer tile_digits;
+  uint count;
+  uint key_words;
+  uint digit_word, digit_shift, digit_bits;
+  uint tile_keys;
 };
 
 struct SortTileScanArgs {
-  CoherentUintBuffer tile_status;  // tiles * SORT_DIGITS counts, replaced by exclusive sums over the tiles
+  UintBuffer tile_digits;  // tiles << digit_bits counts, replaced by exclusive sums over (digit, tile)
   uint tile_count;
-  uint padding;
+  uint digit_bits;
 };
 
 INTERFACE_END

@@ -84,7 +84,7 @@ struct Node {
 // Specialization constants that every kernel may declare: what the device is. No result depends on them.
 const uint DEVICE_SUBGROUP_SIZE_ID = 30;
 // 1 where the invocations of a subgroup are the lanes of one vector (CPU devices): what one has written to
-// shared memory the next instruction of all of them reads.
+// shared or device memory the next instruction of all of them reads.
 const uint DEVICE_LANES_IN_STEP_ID = 31;
 
 INTERFACE_BUFFER(UintBuffer, uint, 4)

@@ -1,28 +1,62 @@
-// The digits of one tile of the radix sort: each invocation counts a run of consecutive keys into a row of its own.
+// The digits of one tile of Onesweep: counted into rows of counters, each over consecutive keys. A row belongs to an
+// invocation, which takes its keys one by one, or to a subgroup, which takes a key an invocation at a time.
 
-shared uint digit_rows[SORT_GROUP * SORT_DIGITS];
+layout(constant_id = 3) const bool RANK_BY_MATCH = false;
+layout(constant_id = 4) const uint GROUP = SORT_RUNS_GROUP;
+layout(constant_id = DEVICE_LANES_IN_STEP_ID) const bool LANES_IN_STEP = false;
+
+const uint ROWS = RANK_BY_MATCH ? GROUP / SUBGROUP_SIZE : GROUP;
+const uint STRIDE = RANK_BY_MATCH ? SUBGROUP_SIZE : 1u;
+
+shared uint digit_rows[SORT_MAX_ROWS * SORT_DIGITS];
+
+uint row() { return RANK_BY_MATCH ? gl_SubgroupID : gl_LocalInvocationIndex; }
 
 uint digit_of(uint key_index) {
   uint word = args.keys_in.at[key_index * args.key_words + args.pass / SORT_PASSES_PER_WORD];
   return bitfieldExtract(word, int((args.pass % SORT_PASSES_PER_WORD) * SORT_DIGIT_BITS), int(SORT_DIGIT_BITS));
 }
 
+// The keys of this invocation's row in a tile: from x to y - 1.
 uvec2 run_of(uint tile) {
-  uint first = tile * SORT_TILE + gl_LocalInvocationIndex * SORT_RUN;
-  return uvec2(first, min(first + SORT_RUN, args.count));
+  uint run = args.tile_keys / ROWS;
+  uint first = tile * args.tile_keys + row() * run;
+  return uvec2(first, min(first + run, args.count));
+}
+
+// Between accesses of a subgroup's invocations to its row.
+void sync_row() {
+  if (RANK_BY_MATCH && !LANES_IN_STEP) subgroupBarrier();
+}
+
+// The place of the invocation's key by the row's counter of its digit, which is moved on. All of the row's invocations
+// at once; those without a key give the digit SORT_DIGITS.
+uint take_place(uint digit) {
+  Match same = Match(0u, true);
+  if (RANK_BY_MATCH) same = match_by_ballot(digit, SORT_DIGIT_BITS);
+  uint counter = row() * SORT_DIGITS + min(digit, SORT_DIGITS - 1u);
+  uint place = digit_rows[counter] + same.before;
+  sync_row();
+  if (digit < SORT_DIGITS && same.is_last) digit_rows[counter] = place + 1u;
+  sync_row();
+  return place;
 }
 
 // The whole workgroup; ends with a barrier.
 void count_rows(uint tile) {
-  uint row = gl_LocalInvocationIndex * SORT_DIGITS;
-  [[dont_unroll]] for (uint digit = 0u; digit < SORT_DIGITS; ++digit) digit_rows[row + digit] = 0u;
+  [[dont_unroll]] for (uint i = gl_LocalInvocationIndex; i < ROWS * SORT_DIGITS; i += GROUP) digit_rows[i] = 0u;
+  barrier();
+  uint lane = RANK_BY_MATCH ? gl_SubgroupInvocationID : 0u;
   uvec2 run = run_of(tile);
-  [[dont_unroll]] for (uint i = run.x; i < run.y; ++i) ++digit_rows[row + digit_of(i)];
+  [[dont_unroll]] for (uint first = run.x; first < run.y; first += STRIDE) {
+    uint i = first + lane;
+    take_place(i < run.y ? digit_of(i) : SORT_DIGITS);
+  }
   barrier();
 }
 
 uint sum_of_rows(uint digit) {
   uint sum = 0u;
-  [[dont_unroll]] for (uint row = 0u; row < SORT_GROUP; ++row) sum += digit_rows[row * SORT_DIGITS + digit];
+  [[dont_unroll]] for (uint r = 0u; r < ROWS; ++r) sum += digit_rows[r * SORT_DIGITS + digit];
   return sum;
 }

@@ -1,0 +1,80 @@
+#include "pipeline/variant_table.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+#include <vector>
+
+namespace coppice {
+
+namespace {
+
+constexpr const char* format_line = "coppice variants 1";
+
+// A name in one line of its own.
+std::string line_of(const char* what, std::string name) {
+  for (char& c : name) {
+    if (c == '\n' || c == '\r') c = ' ';
+  }
+  return std::string(what) + " " + name;
+}
+
+}  // namespace
+
+std::string variant_table_text(const Variants& variants, const DeviceProperties& device) {
+  std::string text = format_line;
+  text += '\n' + line_of("device", device.name) + '\n' + line_of("driver", device.driver) + '\n';
+  for (char c : to_string(variants)) text += c == ',' ? '\n' : c;
+  return text + '\n';
+}
+
+std::string parse_variant_table(const std::string& text, const DeviceProperties& device, Variants& variants) {
+  std::istringstream stream(text);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  if (lines.empty() || lines[0] != format_line) return "is no table of variants";
+  if (lines.size() < 3 || lines[1] != line_of("device", device.name) ||
+      lines[2] != line_of("driver", device.driver))
+    return "is of another device or driver";
+  Variants result = variants;
+  std::size_t line = 3;
+  for (const VariantStage& stage : variant_stages()) {
+    if (line == lines.size() || !lines[line].starts_with(std::string(stage.name) + '='))
+      return "has no line for the stage " + std::string(stage.name);
+    if (std::string error = set_variants(lines[line++], result); !error.empty()) return "is wrong: " + error;
+  }
+  if (line != lines.size() || !text.ends_with('\n')) return "does not end where it should";
+  variants = result;
+  return {};
+}
+
+Variants variants_of(const Device& device) {
+  Variants variants = default_variants(device.properties());
+  const std::filesystem::path path = device.kept_file("variants");
+  std::ifstream file(path, std::ios::binary);
+  if (path.empty() || !file) return variants;
+  std::stringstream text;
+  text << file.rdbuf();
+  const std::string error = parse_variant_table(text.str(), device.properties(), variants);
+  if (!error.empty()) {
+    std::fprintf(stderr, "note: %s %s; ignored (coppice tune writes it anew)\n", path.c_str(), error.c_str());
+  }
+  return variants;
+}
+
+void write_variant_table(const std::filesystem::path& file, const std::string& text) {
+  const std::filesystem::path partial = file.string() + "." + std::to_string(getpid());
+  std::error_code error;
+  std::filesystem::create_directories(file.parent_path(), error);
+  std::ofstream stream(partial, std::ios::binary | std::ios::trunc);
+  stream << text;
+  stream.close();
+  if (stream) std::filesystem::rename(partial, file, error);
+  if (stream && !error) return;
+  std::filesystem::remove(partial, error);
+  throw DeviceError("cannot write " + file.string());
+}
+
+}  // namespace coppice

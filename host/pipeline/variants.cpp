@@ -1,0 +1,66 @@
+#include "pipeline/variants.h"
+
+#include <algorithm>
+
+namespace coppice {
+
+namespace {
+
+// In the order of SortVariant.
+constexpr std::string_view sort_values[] = {"scan", "scan-8", "scan-11", "onesweep-runs", "onesweep-match"};
+
+// Onesweep reads and writes least; a CPU device is bound by instructions, and counts once where Onesweep
+// counts twice.
+std::uint32_t sort_rule(const DeviceProperties& device) {
+  if (device.type == DeviceType::cpu) return SORT_SCAN;
+  return device.subgroup_size >= 16 ? SORT_ONESWEEP_MATCH : SORT_ONESWEEP_RUNS;
+}
+
+constexpr VariantStage stages[] = {{"sort", sort_values, &Variants::sort, sort_rule}};
+
+std::string set_variant(std::string_view text, Variants& variants) {
+  const std::size_t equals = text.find('=');
+  const std::string_view name = text.substr(0, equals);
+  const auto stage = std::ranges::find(stages, name, &VariantStage::name);
+  if (equals == text.npos || stage == std::end(stages))
+    return "'" + std::string(text) + "' names no stage with variants";
+  const std::string_view value = text.substr(equals + 1);
+  const auto found = std::ranges::find(stage->values, value);
+  if (found == stage->values.end())
+    return "the stage " + std::string(name) + " has no variant '" + std::string(value) + "'";
+  variants.*stage->value = static_cast<std::uint32_t>(found - stage->values.begin());
+  return {};
+}
+
+}  // namespace
+
+std::span<const VariantStage> variant_stages() { return stages; }
+
+Variants default_variants(const DeviceProperties& device) {
+  Variants variants;
+  for (const VariantStage& stage : stages) variants.*stage.value = stage.rule(device);
+  return variants;
+}
+
+std::string to_string(const Variants& variants) {
+  std::string text;
+  for (const VariantStage& stage : stages) {
+    if (!text.empty()) text += ',';
+    text += std::string(stage.name) + '=' + std::string(stage.values[variants.*stage.value]);
+  }
+  return text;
+}
+
+std::string set_variants(std::string_view text, Variants& variants) {
+  Variants result = variants;
+  for (;;) {
+    const std::size_t comma = text.find(',');
+    if (std::string error = set_variant(text.substr(0, comma), result); !error.empty()) return error;
+    if (comma == text.npos) break;
+    text.remove_prefix(comma + 1);
+  }
+  variants = result;
+  return {};
+}
+
+}  // namespace coppice

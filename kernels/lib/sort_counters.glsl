@@ -1,0 +1,44 @@
+// A tile of the radix sort that one subgroup takes, as many keys at once as it has invocations, with a counter a digit.
+// On CPU devices the counters stay in device memory, where gathers and scatters are single instructions.
+
+layout(constant_id = DEVICE_LANES_IN_STEP_ID) const bool LANES_IN_STEP = false;
+layout(constant_id = 0) const uint DIGIT_BITS = SORT_NARROW_BITS;  // args.digit_bits
+layout(constant_id = 1) const uint KEY_WORDS = 1u;                 // args.key_words
+const uint DIGITS = 1u << DIGIT_BITS;
+
+shared uint digit_counters[DIGITS];
+
+uint lane() { return gl_SubgroupInvocationID; }
+uint first_counter() { return gl_WorkGroupID.x << DIGIT_BITS; }
+
+uint counter(uint digit) {
+  if (LANES_IN_STEP) return args.tile_digits.at[first_counter() + digit];
+  return digit_counters[digit];
+}
+
+void set_counter(uint digit, uint value) {
+  if (LANES_IN_STEP) args.tile_digits.at[first_counter() + digit] = value;
+  else digit_counters[digit] = value;
+}
+
+// Between accesses of several invocations to the same counter.
+void sync() {
+  if (!LANES_IN_STEP) subgroupBarrier();
+}
+
+void store_counters() {
+  if (LANES_IN_STEP) return;
+  sync();
+  for (uint digit = lane(); digit < DIGITS; digit += SUBGROUP_SIZE)
+    args.tile_digits.at[first_counter() + digit] = digit_counters[digit];
+}
+
+// Places from x to y - 1.
+uvec2 places_of_tile() {
+  uint first = gl_WorkGroupID.x * args.tile_keys;
+  return uvec2(first, min(first + args.tile_keys, args.count));
+}
+
+uint digit_of(uint key_word) { return (key_word >> args.digit_shift) & (DIGITS - 1u); }
+
+uint key_word(uint place, uint word) { return args.keys_in.at[place * KEY_WORDS + word]; }
