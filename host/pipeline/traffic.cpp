@@ -16,7 +16,8 @@ const Args* args_of(const Step& step, const Stage<Args>& stage) {
   return step.stage == &stage ? reinterpret_cast<const Args*>(step.args.data()) : nullptr;
 }
 
-Bytes tiles(Bytes count, Bytes tile) { return (count + tile - 1) / tile; }
+// None of nothing, whatever the size of a tile.
+Bytes tiles(Bytes count, Bytes tile) { return count == 0 ? 0 : (count + tile - 1) / tile; }
 
 constexpr Bytes digit_row = SORT_DIGITS * sizeof(uint);  // of Onesweep: a word for each digit
 
