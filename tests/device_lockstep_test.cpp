@@ -169,9 +169,9 @@ std::vector<Fault> faults() {
                 const auto a = args_of<PlocLeavesArgs>(args);
                 a.clusters[a.triangle_count].height = 1;  // one past the end
               }>()},
-      {"ploc_nearest", "nearest",
-       faulty<&stages::ploc_nearest,
-              [](const void* args) { args_of<PlocNearestArgs>(args).nearest[3] ^= 1; }>()},
+      {"ploc_merge", "partners",
+       faulty<&stages::ploc_merge,
+              [](const void* args) { args_of<PlocMergeArgs>(args).partners[3] ^= 1; }>()},
       {"ploc_merge", "rounds",
        faulty<&stages::ploc_merge,
               [](const void* args) {
