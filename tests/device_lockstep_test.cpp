@@ -82,6 +82,16 @@ INSTANTIATE_TEST_SUITE_P(Cases, LockstepHardCases, testing::ValuesIn(hard_case_n
                            return name;
                          });
 
+// The search goes in blocks as wide as a subgroup. Radii about the width of a block, and equal distances
+// within a block and across.
+TEST_F(Lockstep, TiesAtRadiiThatEndWithinBlocks) {
+  for (const char* name : {"planar-grid", "coincident-and-random"}) {
+    const auto triangles = scene_arrays(find_hard_case(name)->make(3000, 1)).triangles;
+    for (const std::uint32_t radius : {3u, 7u, 9u, 17u, 33u})
+      expect_equal(triangles, variant(radius, 30), name + std::string(" ") + std::to_string(radius));
+  }
+}
+
 TEST_F(Lockstep, WholeFrame) {
   const Scene scene = find_hard_case("nested")->make(3000, 1);
   const SceneArrays arrays = scene_arrays(scene);
