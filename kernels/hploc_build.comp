@@ -11,10 +11,8 @@
 #extension GL_KHR_shader_subgroup_shuffle : require
 #include "interface/hploc.h"
 #include "interface/ploc.h"
-#define PLOC_RUN 1
-#define PLOC_TILE_BOXES HPLOC_LIST
 #include "lib/ploc_round.glsl"
-#include "lib/ploc_search.glsl"
+#include "lib/ploc_box.glsl"
 
 layout(local_size_x_id = DEVICE_SUBGROUP_SIZE_ID) in;
 layout(constant_id = 0) const uint CLUSTER_LIMIT = HPLOC_CLUSTERS;  // args.cluster_limit

@@ -1,11 +1,10 @@
 // In:  the last clusters, at most PLOC_FINISH_CLUSTERS. Out: the rest of the nodes with the root at 0, the rest of the
 // rounds, their number. One workgroup does all rounds in shared memory, by the same rules and with the same numbering
-// as ploc_nearest and ploc_merge; one invocation holds one cluster.
+// as ploc_merge; one invocation holds one cluster.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/ploc.h"
-#define PLOC_RUN 1
-#define PLOC_TILE_BOXES PLOC_FINISH_CLUSTERS
+#define PLOC_BOXES PLOC_FINISH_CLUSTERS
 #include "lib/ploc_round.glsl"
 #include "lib/ploc_search.glsl"
 
@@ -18,7 +17,7 @@ shared uint subgroup_sums[PLOC_FINISH_CLUSTERS / 4];  // no device has subgroups
 
 uint first_finish_round() {
   uint round = 0u;
-  [[dont_unroll]] while (round < args.rounds_bound && args.rounds.at[round].nearest_groups.x != 0u) ++round;
+  [[dont_unroll]] while (round < args.rounds_bound && args.rounds.at[round].merge_groups.x != 0u) ++round;
   return round;
 }
 
@@ -26,10 +25,8 @@ void find_neighbours(uint i, uint cluster_count, bool pair_all, Normalisation no
   if (i < cluster_count) cache_box(i, clusters[i], normalisation);
   barrier();
   if (i < cluster_count) {
-    uint found[PLOC_RUN];
-    if (pair_all) found[0] = paired_with(i, cluster_count);
-    else find_nearest(i, i, cluster_count, min(args.radius, cluster_count - 1u), found);
-    nearest[i] = found[0];
+    if (pair_all) nearest[i] = paired_with(i, cluster_count);
+    else nearest[i] = find_nearest(i, cluster_count, min(args.radius, cluster_count - 1u));
   }
   barrier();
 }

@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "interface/ploc.h"
 #include "lib/ploc_round.glsl"
+#include "lib/wide_words.glsl"
 
 layout(local_size_x = PLOC_LEAVES_GROUP) in;
 layout(push_constant, scalar) uniform Push { PlocLeavesArgs args; };
@@ -14,7 +15,7 @@ void main() {
   uint last = min((gl_WorkGroupID.x + 1u) * PLOC_LEAVES_TILE, active_count);
   [[dont_unroll]] for (uint i = first; i < last; i += PLOC_LEAVES_GROUP) {
     uint triangle = args.values.at[i];
-    Aabb box = args.boxes.at[triangle];
-    args.clusters.at[i] = Node(box.box_min, triangle, box.box_max, 0u);
+    Aabb box = load_box(args.boxes, triangle);
+    store_node(args.clusters, i, Node(box.box_min, triangle, box.box_max, 0u));
   }
 }

@@ -4,6 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "interface/bounds.h"
 #include "lib/ordered_float.glsl"
+#include "lib/wide_words.glsl"
 
 layout(local_size_x = PRIMITIVE_BOUNDS_GROUP) in;
 layout(push_constant, scalar) uniform Push { PrimitiveBoundsArgs args; };
@@ -50,7 +51,7 @@ void main() {
       box_max = max(box_max, ordered(box.box_max));
       ++active_count;
     }
-    args.boxes.at[i] = box;
+    store_box(args.boxes, i, box);
   }
   reduce_into_tile(min_complement, box_max, active_count);
   barrier();

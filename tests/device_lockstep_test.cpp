@@ -97,6 +97,16 @@ INSTANTIATE_TEST_SUITE_P(Cases, LockstepHardCases, testing::ValuesIn(hard_case_n
                            return name;
                          });
 
+// The search goes in blocks as wide as a subgroup. Radii about the width of a block, and equal distances
+// within a block and across.
+TEST_F(Lockstep, TiesAtRadiiThatEndWithinBlocks) {
+  for (const char* name : {"planar-grid", "coincident-and-random"}) {
+    const auto triangles = scene_arrays(find_hard_case(name)->make(3000, 1)).triangles;
+    for (const std::uint32_t radius : {3u, 7u, 9u, 17u, 33u})
+      expect_equal(triangles, variant(radius, 30), name + std::string(" ") + std::to_string(radius));
+  }
+}
+
 TEST_F(Lockstep, WholeFrame) {
   const Scene scene = find_hard_case("nested")->make(3000, 1);
   const SceneArrays arrays = scene_arrays(scene);
@@ -199,9 +209,9 @@ std::vector<Fault> faults() {
                 const auto a = args_of<PlocLeavesArgs>(args);
                 a.clusters[a.triangle_count].height = 1;  // one past the end
               }>()},
-      {"ploc_nearest", "nearest",
-       faulty<&stages::ploc_nearest,
-              [](const void* args) { args_of<PlocNearestArgs>(args).nearest[3] ^= 1; }>()},
+      {"ploc_merge", "partners",
+       faulty<&stages::ploc_merge,
+              [](const void* args) { args_of<PlocMergeArgs>(args).partners[3] ^= 1; }>()},
       {"ploc_merge", "rounds",
        faulty<&stages::ploc_merge,
               [](const void* args) {

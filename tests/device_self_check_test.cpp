@@ -33,10 +33,7 @@ bool uses_lookback(const std::vector<Step>& steps) {
 // Every build ends well, with a tree that is valid and not the one asked for.
 void search_too_near(std::vector<Step>& steps) {
   for (Step& step : steps) {
-    if (!is_stage(step, "ploc_nearest")) continue;
-    auto args = args_of<PlocNearestArgs>(step);
-    args.radius = 1;
-    std::memcpy(step.args.data(), &args, sizeof args);
+    if (is_stage(step, "ploc_merge") || is_stage(step, "ploc_tile_counts")) step.specialization.at(3) = 1;
   }
 }
 
@@ -56,7 +53,8 @@ TEST_F(SelfCheck, DoesWithoutLookbackWhereItEndsWithAnError) {
   EXPECT_FALSE(check_lookback(test_device(), {}, [&](std::vector<Step>& steps) {
     for (Step& step : steps) {
       if (!is_stage(step, "ploc_merge") || args_of<PlocMergeArgs>(step).lookback == 0) continue;
-      step.specialization = {0, 0, 1u << LOOKBACK_SILENT_SHIFT};  // no poll, no fallback, a silent tile
+      step.specialization[0] = step.specialization[1] = 0;
+      step.specialization[2] = 1u << LOOKBACK_SILENT_SHIFT;  // no poll, no fallback, a silent tile
       stressed = true;
     }
   }));

@@ -21,7 +21,7 @@ PlocRound round_of(uint clusters, uint merged_before, uint groups, uint pair_all
   round.cluster_count = clusters;
   round.merged_before = merged_before;
   round.pair_all = pair_all;
-  round.nearest_groups.x = round.merge_groups.x = groups;
+  round.merge_groups.x = groups;
   return round;
 }
 
@@ -54,7 +54,6 @@ TEST(Traffic, OfABuildWithLookback) {
   EXPECT_EQ(bytes["sort_digit_scan"], 8192u);                   // 2 KiB a pass
   EXPECT_EQ(bytes["sort_pass"], 4u * (320000 + 2 * 3 * 1024));  // two tiles of 16,384 keys
   EXPECT_EQ(bytes["ploc_leaves"], 1140000u);                    // 60 an active triangle
-  EXPECT_EQ(bytes["ploc_nearest"], 19000u * 37 + 3000 * 4);     // the second round pairs all
   EXPECT_EQ(bytes["ploc_merge"], 68u * 22000 + 32 * (16000 + 2500));
   EXPECT_EQ(bytes["ploc_finish"], 32u * 500 + 32 * 999);
 }
@@ -65,8 +64,7 @@ TEST(Traffic, OfABuildWithoutLookbackAndWith60Bits) {
   EXPECT_EQ(bytes["sort_tile_counts"], 6u * (80000 + 2 * 8192));  // 6 passes, 2 tiles, 2,048 digits
   EXPECT_EQ(bytes["sort_tile_scan"], 6u * 2 * 2 * 8192);
   EXPECT_EQ(bytes["sort_scatter"], 6u * (480000 + 2 * 2 * 8192));
-  EXPECT_EQ(bytes["ploc_nearest"], 19000u * 36 + 19000 / 2 + 3000 * 4);
-  EXPECT_EQ(bytes["ploc_tile_counts"], 4u * 22000 + 8 * 22);
+  EXPECT_EQ(bytes["ploc_tile_counts"], 4u * 22000 + 32 * 19000 + 8 * 22);  // the second round pairs all
   EXPECT_EQ(bytes["ploc_tile_scan"], 24u * 22);
 }
 

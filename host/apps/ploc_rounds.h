@@ -1,7 +1,5 @@
 #pragma once
 
-#include <optional>
-
 #include "apps/kernel_times.h"
 
 namespace coppice {
@@ -9,9 +7,9 @@ namespace coppice {
 // One round of PLOC that had dispatches of its own, or all rounds of the finish together.
 struct PlocRoundTime {
   std::uint32_t round, clusters, merged;
-  bool pair_all;                     // paired all clusters, whatever their distance
-  std::optional<double> nearest_ms;  // empty for the finish
-  double merge_ms = 0;               // without lookback, sums and scan of the tiles included
+  bool pair_all;  // paired all clusters, whatever their distance
+  bool finish;    // all rounds of ploc_finish
+  double ms = 0;  // without lookback, sums and scan of the tiles included
 };
 
 // From a split of the build that left `counts`.

@@ -12,8 +12,7 @@ namespace {
 
 // max_triangles is what one dispatch of the smallest tile reaches.
 static_assert(std::min({PRIMITIVE_BOUNDS_TILE, MORTON_TILE, SORT_HISTOGRAM_TILE, SORT_RUNS_TILE,
-                        SORT_MATCH_TILE, SORT_SCAN_TILE, PLOC_LEAVES_TILE, PLOC_MERGE_TILE}) >=
-              PLOC_NEAREST_TILE);
+                        SORT_MATCH_TILE, SORT_SCAN_TILE, PLOC_LEAVES_TILE}) >= PLOC_MERGE_TILE);
 
 uvec3 tiles(std::uint32_t count, std::uint32_t tile, std::uint32_t rows = 1) {
   return {count / tile + (count % tile != 0), rows, 1};
@@ -97,31 +96,32 @@ void append_sort_passes(Chain& chain, const BuildPlan& plan) {
 }
 
 void append_round(Chain& chain, const BuildPlan& plan, std::uint32_t round) {
-  const auto in = chain.at(plan.clusters[round % 2]), out = chain.at(plan.clusters[(round + 1) % 2]);
-  const auto nearest = chain.at(plan.nearest), status = chain.at(plan.round_status);
+  const int in = round % 2, out = 1 - in;
   const auto groups = [&](std::size_t member) {
     return Place{plan.rounds.place.block, plan.rounds.place.offset + round * sizeof(PlocRound) + member};
   };
-  chain.run_indirect(
-      stages::ploc_nearest,
-      {in, nearest, status, chain.at(plan.state), chain.at(plan.rounds), round, plan.options.radius},
-      groups(offsetof(PlocRound, nearest_groups)));
-  const PlocMergeArgs merge{in,
-                            out,
-                            nearest,
-                            status,
-                            chain.at(plan.nodes),
-                            chain.at(plan.state),
-                            chain.at(plan.rounds),
-                            round,
-                            plan.options.lookback};
+  const auto status = chain.at(plan.round_status[in]);
+  const PlocMergeArgs args{chain.at(plan.clusters[in]),
+                           chain.at(plan.clusters[out]),
+                           chain.at(plan.partners),
+                           status,
+                           chain.at(plan.round_status[out]),
+                           chain.at(plan.nodes),
+                           chain.at(plan.state),
+                           chain.at(plan.rounds),
+                           round,
+                           plan.options.lookback,
+                           plan.options.radius,
+                           0};
   const Place merge_groups = groups(offsetof(PlocRound, merge_groups));
+  std::vector<std::uint32_t> constants = lookback_constants(plan.options);
+  constants.push_back(plan.options.radius);
   if (!plan.options.lookback) {
-    chain.run_indirect(stages::ploc_tile_counts, merge, merge_groups);
+    chain.run_indirect(stages::ploc_tile_counts, args, merge_groups, constants);
     chain.run_indirect(stages::ploc_tile_scan, {status, chain.at(plan.rounds), round, 0},
                        groups(offsetof(PlocRound, tile_scan_groups)));
   }
-  chain.run_indirect(stages::ploc_merge, merge, merge_groups, lookback_constants(plan.options));
+  chain.run_indirect(stages::ploc_merge, args, merge_groups, constants);
 }
 
 void append_ploc(Chain& chain, const BuildPlan& plan) {
@@ -176,6 +176,7 @@ void append_sort(Chain& chain, const BuildPlan& plan) {
 void append_build(Chain& chain, const BuildPlan& plan) {
   chain.clear(plan.state);
   chain.clear(plan.rounds);
+  chain.clear(plan.round_status[0]);
   chain.clear(plan.arrivals);
   clear_sort(chain, plan);
   append_bounds(chain, plan);

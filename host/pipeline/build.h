@@ -81,14 +81,15 @@ struct BuildPlan : TreeSlots {
 
   // Of PLOC only.
   Slot<PlocRound> rounds;  // out: one an entered round, the last with one cluster
-  Slot<uint> nearest, round_status;
+  Slot<uint> partners;
+  Slot<uint> round_status[2];  // of even and odd rounds
 
   // Of H-PLOC and LBVH only.
   Slot<uint> cluster_names, arrivals;
 };
 
 // The most triangles of a build: Vulkan promises 65,535 workgroups a dispatch.
-inline constexpr std::uint32_t max_triangles = 65535u * PLOC_NEAREST_TILE;
+inline constexpr std::uint32_t max_triangles = 65535u * PLOC_MERGE_TILE;
 
 // The constants of a kernel with lookback.
 std::vector<std::uint32_t> lookback_constants(const BuildOptions& options);

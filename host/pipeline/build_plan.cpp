@@ -18,9 +18,11 @@ void add_ploc_slots(Layout& layout, BuildPlan& plan) {
   plan.rounds = layout.add<PlocRound>("rounds", plan.rounds_bound + 1);
   plan.clusters[0] = layout.add<Node>("clusters_even", n);
   plan.clusters[1] = layout.add<Node>("clusters_odd", n);
-  plan.nearest = layout.add<uint>("nearest", n);
-  plan.round_status =
-      layout.add<uint>("round_status", std::uint64_t{divide_up(n, PLOC_MERGE_TILE)} * PLOC_MERGE_SUMS);
+  plan.partners = layout.add<uint>("partners", n);
+  for (int i = 0; i < 2; ++i) {
+    plan.round_status[i] = layout.add<uint>(i ? "round_status_odd" : "round_status_even",
+                                            std::uint64_t{divide_up(n, PLOC_MERGE_TILE)} * PLOC_MERGE_SUMS);
+  }
 }
 
 void add_hploc_slots(Layout& layout, BuildPlan& plan) {

@@ -51,20 +51,19 @@ std::optional<Bytes> sort_bytes(const Step& step) {
   return std::nullopt;
 }
 
-Bytes nearest_bytes(const PlocNearestArgs& args, const PlocRound& round) {
-  const Bytes clusters = round.cluster_count;
-  if (round.pair_all) return clusters * 4;
-  return clusters * (sizeof(Node) + 4) + clusters * sizeof(Node) * 2 * args.radius / PLOC_NEAREST_TILE;
-}
-
 Bytes merge_bytes(const PlocRound& round, const PlocRound& next) {
   const Bytes merges = next.merged_before - round.merged_before;
   return Bytes{round.cluster_count} * (4 + 2 * sizeof(Node)) + merges * sizeof(Node);
 }
 
+Bytes tile_counts_bytes(const PlocRound& round) {
+  const Bytes searched = round.pair_all ? 0 : round.cluster_count;
+  return searched * sizeof(Node) + Bytes{round.cluster_count} * 4 + Bytes{round.merge_groups.x} * 8;
+}
+
 Bytes finish_bytes(const RunCounts& counts) {
   const auto first =
-      std::ranges::find(counts.rounds, 0u, [](const PlocRound& r) { return r.nearest_groups.x; });
+      std::ranges::find(counts.rounds, 0u, [](const PlocRound& r) { return r.merge_groups.x; });
   if (first == counts.rounds.end() || first->cluster_count == 0) return 0;
   const Bytes clusters = first->cluster_count;
   return clusters * sizeof(Node) + (2 * clusters - 1) * sizeof(Node);
@@ -73,18 +72,16 @@ Bytes finish_bytes(const RunCounts& counts) {
 std::optional<Bytes> ploc_bytes(const Step& step, const RunCounts& counts) {
   // A round without workgroups, which is the finish's, moves nothing in these stages.
   const auto round = [&](std::uint32_t index) {
-    const bool dispatched = index < counts.rounds.size() && counts.rounds[index].nearest_groups.x != 0;
+    const bool dispatched = index < counts.rounds.size() && counts.rounds[index].merge_groups.x != 0;
     return dispatched ? counts.rounds[index] : PlocRound{};
   };
   if (step.stage == &stages::ploc_leaves)
     return Bytes{counts.active_count} * (4 + sizeof(Aabb) + sizeof(Node));
-  if (const auto* a = args_of(step, stages::ploc_nearest)) return nearest_bytes(*a, round(a->round));
   if (const auto* a = args_of(step, stages::ploc_merge)) {
     const PlocRound merged = round(a->round);
     return merged.cluster_count == 0 ? 0 : merge_bytes(merged, counts.rounds.at(a->round + 1));
   }
-  if (const auto* a = args_of(step, stages::ploc_tile_counts))
-    return Bytes{round(a->round).cluster_count} * 4 + Bytes{round(a->round).merge_groups.x} * 8;
+  if (const auto* a = args_of(step, stages::ploc_tile_counts)) return tile_counts_bytes(round(a->round));
   if (const auto* a = args_of(step, stages::ploc_tile_scan))
     return Bytes{round(a->round).merge_groups.x} * 24;
   if (step.stage == &stages::ploc_finish) return finish_bytes(counts);

@@ -22,7 +22,6 @@
   STAGE(sort_tile_scan, SortTileScanArgs)       \
   STAGE(sort_scatter, SortScatterArgs)          \
   STAGE(ploc_leaves, PlocLeavesArgs)            \
-  STAGE(ploc_nearest, PlocNearestArgs)          \
   STAGE(ploc_tile_counts, PlocMergeArgs)        \
   STAGE(ploc_tile_scan, PlocTileScanArgs)       \
   STAGE(ploc_merge, PlocMergeArgs)              \

@@ -2,33 +2,14 @@
 #include <vector>
 
 #include "interface/ploc.h"
-#include "twins/normalised.h"
 #include "twins/ploc_rounds.h"
 
 namespace coppice::twins {
 
-namespace {
-
-std::vector<uint> find_neighbours(const std::vector<Node>& clusters, bool pair_all, uint radius,
-                                  const Normalisation& normalise) {
-  const auto count = static_cast<uint>(clusters.size());
-  std::vector<Aabb> boxes;
-  for (const Node& cluster : clusters)
-    boxes.push_back({normalise(cluster.box_min), normalise(cluster.box_max)});
-  std::vector<uint> nearest;
-  for (uint i = 0; i < count; ++i) {
-    const uint partner = i % 2 == 1 ? i - 1 : i + 1 < count ? i + 1 : i;
-    nearest.push_back(pair_all ? partner : nearest_neighbour(boxes.data(), i, count, radius));
-  }
-  return nearest;
-}
-
-}  // namespace
-
 void ploc_finish(const PlocFinishArgs& args) {
   BuildState& state = args.state[0];
   uint index = 0;
-  while (args.rounds[index].nearest_groups.x != 0 && index < args.rounds_bound) ++index;
+  while (args.rounds[index].merge_groups.x != 0 && index < args.rounds_bound) ++index;
   const NodeBuffer in = index % 2 == 0 ? args.clusters_even : args.clusters_odd;
   std::vector<Node> clusters(&in[0], &in[0] + args.rounds[index].cluster_count);
 

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <array>
+#include <vector>
 
 #include "interface/ploc.h"
 #include "twins/lookback_words.h"
@@ -9,10 +11,14 @@ namespace coppice::twins {
 void ploc_merge(const PlocMergeArgs& args) {
   PlocRound& round = args.rounds[args.round];
   const uint active_count = args.state[0].active_count;
+  const std::vector<uint> nearest = find_neighbours(
+      {&args.clusters_in[0], round.cluster_count}, round.pair_all, args.radius, Normalisation(args.state[0]));
+  std::fill_n(&args.next_status[0], std::size_t{round.merge_groups.x} * PLOC_MERGE_SUMS, 0u);
   std::array<uint, PLOC_MERGE_SUMS> prefix{};  // retired, merged
   for (uint i = 0; i < round.cluster_count; ++i) {
-    const uint j = args.nearest[i];
-    const bool mutual = j != i && args.nearest[j] == i;
+    const uint j = nearest[i];
+    const bool mutual = j != i && nearest[j] == i;
+    args.partners[i] = !mutual ? i : j < i ? PLOC_RETIRES : j;
     if (mutual && j < i) {
       ++prefix[0];
     } else {

@@ -5,8 +5,6 @@
 #include <cstdlib>
 #include <tuple>
 
-#include "twins/normalised.h"
-
 namespace coppice::twins {
 
 PlocRound make_round(uint cluster_count, uint merged_before, bool pair_all) {
@@ -15,7 +13,6 @@ PlocRound make_round(uint cluster_count, uint merged_before, bool pair_all) {
   round.merged_before = merged_before;
   round.pair_all = pair_all;
   if (cluster_count > PLOC_FINISH_CLUSTERS) {
-    round.nearest_groups = {(cluster_count - 1) / PLOC_NEAREST_TILE + 1, 1, 1};
     round.merge_groups = {(cluster_count - 1) / PLOC_MERGE_TILE + 1, 1, 1};
     round.tile_scan_groups = {1, 1, 1};
   }
@@ -59,6 +56,20 @@ uint nearest_neighbour(const Aabb* normalised_boxes, uint i, uint cluster_count,
     }
   }
   return best;
+}
+
+std::vector<uint> find_neighbours(std::span<const Node> clusters, bool pair_all, uint radius,
+                                  const Normalisation& normalise) {
+  const auto count = static_cast<uint>(clusters.size());
+  std::vector<Aabb> boxes;
+  for (const Node& cluster : clusters)
+    boxes.push_back({normalise(cluster.box_min), normalise(cluster.box_max)});
+  std::vector<uint> nearest;
+  for (uint i = 0; i < count; ++i) {
+    const uint partner = i % 2 == 1 ? i - 1 : i + 1 < count ? i + 1 : i;
+    nearest.push_back(pair_all ? partner : nearest_neighbour(boxes.data(), i, count, radius));
+  }
+  return nearest;
 }
 
 }  // namespace coppice::twins

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "interface/ploc.h"
+#include "twins/normalised.h"
 
 namespace coppice::twins {
 
@@ -18,5 +22,10 @@ uint children_place(uint active_count, uint rank);
 
 // Nearest neighbour of cluster i among its `radius` neighbours on either side; i if it has none.
 uint nearest_neighbour(const Aabb* normalised_boxes, uint i, uint cluster_count, uint radius);
+
+// For each cluster of a round the index of the nearest of its `radius` neighbours on either side, or of its
+// partner where all pair; its own where it has none.
+std::vector<uint> find_neighbours(std::span<const Node> clusters, bool pair_all, uint radius,
+                                  const Normalisation& normalise);
 
 }  // namespace coppice::twins

@@ -16,14 +16,11 @@ const uint PLOC_LEAVES_GROUP = 64;
 const uint PLOC_LEAVES_PER_INVOCATION = 16;
 const uint PLOC_LEAVES_TILE = PLOC_LEAVES_GROUP * PLOC_LEAVES_PER_INVOCATION;
 
-const uint PLOC_NEAREST_GROUP = 128;
-const uint PLOC_NEAREST_RUN = 8;  // consecutive clusters that one invocation searches for
-const uint PLOC_NEAREST_TILE = PLOC_NEAREST_GROUP * PLOC_NEAREST_RUN;
-
-const uint PLOC_MERGE_GROUP = 64;
-const uint PLOC_MERGE_STEPS = 16;  // clusters of one invocation, less than 32
-const uint PLOC_MERGE_TILE = PLOC_MERGE_GROUP * PLOC_MERGE_STEPS;
+// What one workgroup, a single subgroup, searches and merges; an even number, so that pairs of a round that
+// pairs all do not lie in two tiles.
+const uint PLOC_MERGE_TILE = 1024;
 const uint PLOC_MERGE_SUMS = 2;  // scanned together: clusters that retire, pairs that merge
+const uint PLOC_RETIRES = 0xffffffff;
 const uint PLOC_TILE_SCAN_GROUP = 64;
 
 const uint PLOC_FINISH_CLUSTERS =
@@ -32,14 +29,13 @@ const uint PLOC_FINISH_CLUSTERS =
 // One round, written by the last tile of the round before it. Zero for a round that is not needed.
 struct PlocRound {
   uint cluster_count;
-  uint merged_before;    // pairs merged in all earlier rounds
-  uint pair_all;         // 1: cluster 2i merges with 2i + 1, whatever their distance
-  uint ticket;           // tile tickets of this round's merge
-  uvec3 nearest_groups;  // indirect dispatches of this round; zero when the finish takes over
-  uvec3 merge_groups;
+  uint merged_before;  // pairs merged in all earlier rounds
+  uint pair_all;       // 1: cluster 2i merges with 2i + 1, whatever their distance
+  uint ticket;         // tile tickets of this round's merge
+  uvec3 merge_groups;  // indirect dispatch of this round; zero when the finish takes over
   // Without lookback one more workgroup scans the tiles.
   uvec3 tile_scan_groups;
-  uint padding0, padding1, padding2;
+  uint padding0, padding1;
 };
 
 INTERFACE_BUFFER(PlocRoundBuffer, PlocRound, 16)
@@ -54,27 +50,21 @@ struct PlocLeavesArgs {
   uint padding;
 };
 
-struct PlocNearestArgs {
-  NodeBuffer clusters;     // of this round
-  UintBuffer nearest;      // cluster_count: index of the nearest neighbour; its own index when it has none
-  UintBuffer tile_status;  // cleared for this round's merge
-  BuildStateBuffer state;  // scene box, read
-  PlocRoundBuffer rounds;
-  uint round;
-  uint radius;
-};
-
 struct PlocMergeArgs {
   NodeBuffer clusters_in;
   NodeBuffer clusters_out;
-  UintBuffer nearest;
+  UintBuffer
+      partners;  // a cluster: whom it merges with; itself; or PLOC_RETIRES, where another merges with it
   CoherentUintBuffer
-      tile_status;   // tiles * PLOC_MERGE_SUMS; without lookback, sums of each tile, then their prefixes
-  NodeBuffer nodes;  // 2 * active_count - 1
+      tile_status;  // tiles * PLOC_MERGE_SUMS; without lookback, sums of each tile, then their prefixes
+  UintBuffer next_status;  // the tile_status of the next round: cleared
+  NodeBuffer nodes;        // 2 * active_count - 1
   BuildStateBuffer state;
   PlocRoundBuffer rounds;
   uint round;
   uint lookback;  // 1: tile prefixes by lookback; 0: from ploc_tile_counts and ploc_tile_scan
+  uint radius;    // for the twins: in the kernels the constant RADIUS
+  uint padding;
 };
 
 struct PlocTileScanArgs {

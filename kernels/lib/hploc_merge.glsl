@@ -41,11 +41,6 @@ void join_pairs(uint pair_count) {
 
 uint list_index(uint strip) { return strip * gl_WorkGroupSize.x + lane(); }
 
-struct Nearest {
-  float area;
-  uint gap;
-};
-
 // A cluster on its way past the others, with its nearest neighbour among those before it.
 struct Traveller {
   Box box;
@@ -114,7 +109,7 @@ void find_nearest_in_list(inout ListLanes its, uint count, uint radius, Normalis
   sync();
   [[unroll]] for (uint k = 0u; k < STRIPS; ++k) {
     uint i = list_index(k);
-    its.nearest[k] = nearer_side(i, left_area[i], left_gap[i], right[k].area, right[k].gap);
+    its.nearest[k] = nearer_side(i, Nearest(left_area[i], left_gap[i]), right[k]);
   }
 }
 

@@ -5,11 +5,9 @@ uint tiles(uint cluster_count, uint tile) { return (cluster_count + tile - 1u) /
 
 PlocRound planned_round(uint cluster_count, uint merged_before, bool pair_all) {
   bool dispatched = cluster_count > PLOC_FINISH_CLUSTERS;
-  uvec3 nearest_groups = uvec3(tiles(cluster_count, PLOC_NEAREST_TILE), 1u, 1u);
   uvec3 merge_groups = uvec3(tiles(cluster_count, PLOC_MERGE_TILE), 1u, 1u);
   return PlocRound(cluster_count, merged_before, pair_all ? 1u : 0u, 0u,
-                   dispatched ? nearest_groups : uvec3(0u), dispatched ? merge_groups : uvec3(0u),
-                   dispatched ? uvec3(1u) : uvec3(0u), 0u, 0u, 0u);
+                   dispatched ? merge_groups : uvec3(0u), dispatched ? uvec3(1u) : uvec3(0u), 0u, 0u);
 }
 
 PlocRound round_after(uint round_index, uint cluster_count, uint merged_before, uint merged) {

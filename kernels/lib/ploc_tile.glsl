@@ -1,46 +1,130 @@
-// One tile of a round's merge: which of its clusters retire and which merge. A subgroup walks over consecutive
-// clusters in PLOC_MERGE_STEPS steps, so ranks follow the order of the list whatever the subgroup's size.
+// Whom each cluster of a tile merges with, found by one subgroup.
+//
+// The subgroup goes over the list in blocks, a cluster a lane. Boxes of the block and of those that its clusters may
+// merge with are in registers; a box meets the others by shuffles, each pair once, so that its distance serves both. A
+// cluster's left side is complete when its block comes up.
+//
+// The including kernel defines RADIUS, a specialization constant, and `args` with clusters_in and partners.
+#include "lib/ploc_box.glsl"
+#include "lib/wide_words.glsl"
 
-shared uvec2 subgroup_sums[PLOC_MERGE_GROUP];  // retiring, merging; by subgroup
+const uint LANES = gl_WorkGroupSize.x;
+const uint BLOCKS_AHEAD = (RADIUS + LANES - 1u) / LANES;  // that a cluster may merge with
 
-// Bit k: this invocation's cluster in step k. Of a mutual pair the lower index merges and keeps its place, the upper
-// one retires.
-struct Fates {
-  uint retiring, merging;
+uint lane() { return gl_SubgroupInvocationID; }
+
+// What is known of the clusters of one block, a cluster a lane.
+struct Block {
+  Box box;
+  Nearest left;
 };
 
-// This invocation's cluster in step 0; the next is gl_SubgroupSize further on.
-uint first_cluster(uint tile) {
-  return tile * PLOC_MERGE_TILE + gl_SubgroupID * gl_SubgroupSize * PLOC_MERGE_STEPS + gl_SubgroupInvocationID;
-}
-
-Fates find_fates(uint tile, uint cluster_count) {
-  Fates fates = Fates(0u, 0u);
-  uint i = first_cluster(tile);
-  [[dont_unroll]] for (uint bit = 1u; i < cluster_count && bit < 1u << PLOC_MERGE_STEPS; bit <<= 1) {
-    uint j = args.nearest.at[i];
-    if (j != i && args.nearest.at[j] == i) {
-      fates.retiring |= j < i ? bit : 0u;
-      fates.merging |= j < i ? 0u : bit;
-    }
-    i += gl_SubgroupSize;
+Block load_block(uint i, uint cluster_count, Normalisation normalisation) {
+  Block block = Block(Box(vec3(-FAR), vec3(FAR)), Nearest(NO_AREA, 0u));
+  if (i < cluster_count) {
+    Node cluster = load_node(args.clusters_in, i);
+    block.box = Box(normalised(cluster.box_min, normalisation), normalised(cluster.box_max, normalisation));
   }
-  return fates;
+  return block;
 }
 
-// The whole workgroup; ends with a barrier. The sums of the subgroups stay in subgroup_sums.
-uvec2 sum_fates(Fates fates) {
-  uvec2 sums = subgroupAdd(uvec2(bitCount(fates.retiring), bitCount(fates.merging)));
-  if (subgroupElect()) subgroup_sums[gl_SubgroupID] = sums;
-  barrier();
-  uvec2 total = uvec2(0u);
-  [[dont_unroll]] for (uint s = 0u; s < gl_NumSubgroups; ++s) total += subgroup_sums[s];
-  return total;
+// The lane's box, `gap` lanes further on, of two blocks in a row.
+Box box_ahead(Box near, Box next, uint gap) {
+  bvec3 wrapped = bvec3(lane() < gap);
+  uint from = (lane() + gap) % LANES;
+  return Box(subgroupShuffle(mix(near.box_min, next.box_min, wrapped), from),
+             subgroupShuffle(mix(near.box_max, next.box_max, wrapped), from));
 }
 
-// Sums over the subgroups before this one in the tile; after sum_fates.
-uvec2 sums_before() {
-  uvec2 before = uvec2(0u);
-  [[dont_unroll]] for (uint s = 0u; s < gl_SubgroupID; ++s) before += subgroup_sums[s];
-  return before;
+// Of equal distances the earlier one stays: for one block gaps come in ascending order.
+void take_nearer(inout Nearest nearest, bool met, float area, uint gap) {
+  bool nearer = met && area < nearest.area;
+  nearest.area = nearer ? area : nearest.area;
+  nearest.gap = nearer ? gap : nearest.gap;
+}
+
+// How far in the list the nearest neighbours are, of a block and those about it.
+struct Choices {
+  int blocks[2u * BLOCKS_AHEAD + 1u];
+};
+
+// That of the cluster `to` places behind the first.
+int choice_of(uint to, Choices choices) {
+  int found = 0;
+  [[unroll]] for (uint k = 0u; k <= 2u * BLOCKS_AHEAD; ++k) {
+    int choice = subgroupShuffle(choices.blocks[k], to % LANES);
+    found = to / LANES == k ? choice : found;
+  }
+  return found;
+}
+
+// Of a mutual pair the lower index takes in the upper one, which retires. Returns what they count: clusters that retire,
+// and, 16 bits higher, pairs that merge.
+uint count_fate(uint i, int choice, bool mutual, bool keep) {
+  bool retires = mutual && choice < 0, merges = mutual && choice > 0;
+  if (keep) args.partners.at[i] = retires ? PLOC_RETIRES : merges ? i + uint(choice) : i;
+  return retires ? 1u : merges ? 0x10000u : 0u;
+}
+
+// The lane's part of the tile's sums; keeps the partners if asked.
+uint search_tile(uint first, uint last, uint cluster_count, bool keep) {
+  Normalisation normalisation = scene_normalisation(args.state.at[0]);
+  const uint halo = BLOCKS_AHEAD * LANES;
+  uint sums = 0u;
+  uint i = first - 2u * halo + lane();  // below zero it wraps around, to absent clusters
+  Choices choices;
+  Block blocks[BLOCKS_AHEAD + 2u];      // the last one is on its way
+  [[unroll]] for (uint k = 0u; k <= BLOCKS_AHEAD; ++k) {
+    blocks[k] = load_block(i + k * LANES, cluster_count, normalisation);
+    choices.blocks[k] = choices.blocks[k + BLOCKS_AHEAD] = 0;
+  }
+  uint block_count = (last - first + LANES - 1u) / LANES + 3u * BLOCKS_AHEAD;
+  [[dont_unroll]] for (uint block = 0u; block < block_count; ++block) {
+    blocks[BLOCKS_AHEAD + 1u] = load_block(i + halo + LANES, cluster_count, normalisation);
+    Nearest right = Nearest(NO_AREA, 0u), left[BLOCKS_AHEAD + 1u];
+    [[unroll]] for (uint k = 0u; k <= BLOCKS_AHEAD; ++k) left[k] = right;
+    [[unroll]] for (uint k = 0u; k < BLOCKS_AHEAD; ++k) {
+      [[unroll]] for (uint step = 1u; step <= LANES; ++step) {
+        uint gap = k * LANES + step;
+        if (gap > RADIUS) break;
+        float area = union_area(blocks[0].box, box_ahead(blocks[k].box, blocks[k + 1u].box, step));
+        take_nearer(right, true, area, gap);
+        float area_behind = subgroupShuffle(area, (lane() + LANES - step) % LANES);
+        take_nearer(left[k], lane() >= step, area_behind, gap);
+        take_nearer(left[k + 1u], lane() < step, area_behind, gap);
+      }
+    }
+    // The gaps to this block are smaller than those to the blocks before it.
+    [[unroll]] for (uint k = 0u; k <= BLOCKS_AHEAD; ++k) {
+      if (left[k].area <= blocks[k].left.area) blocks[k].left = left[k];
+    }
+    uint nearest = nearer_side(i, blocks[0].left, right);
+    [[unroll]] for (uint k = 0u; k < 2u * BLOCKS_AHEAD; ++k) choices.blocks[k] = choices.blocks[k + 1u];
+    choices.blocks[2u * BLOCKS_AHEAD] = int(nearest - i);
+    int choice = choices.blocks[BLOCKS_AHEAD];
+    int answer = choice_of(halo + lane() + uint(choice), choices);
+    bool mutual = choice != 0 && answer == -choice;
+    if (block >= 3u * BLOCKS_AHEAD && i - halo < last) sums += count_fate(i - halo, choice, mutual, keep);
+    [[unroll]] for (uint k = 0u; k <= BLOCKS_AHEAD; ++k) blocks[k] = blocks[k + 1u];
+    i += LANES;
+  }
+  return sums;
+}
+
+uint pair_tile(uint first, uint last, uint cluster_count, bool keep) {
+  uint sums = 0u;
+  [[dont_unroll]] for (uint i = first + lane(); i < last; i += LANES) {
+    int choice = int(paired_with(i, cluster_count) - i);
+    sums += count_fate(i, choice, choice != 0, keep);
+  }
+  return sums;
+}
+
+// Returns the tile's sums: clusters that retire, pairs that merge. Keeps the partners of its clusters if asked.
+uvec2 find_partners(uint tile, PlocRound round, bool keep) {
+  uint first = tile * PLOC_MERGE_TILE, last = min(first + PLOC_MERGE_TILE, round.cluster_count);
+  uint sums = round.pair_all != 0u ? pair_tile(first, last, round.cluster_count, keep)
+                                   : search_tile(first, last, round.cluster_count, keep);
+  sums = subgroupAdd(sums);
+  return uvec2(sums & 0xffffu, sums >> 16);
 }
