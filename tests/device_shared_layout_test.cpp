@@ -53,7 +53,11 @@ TEST(SharedLayout, ElementsOfEverySlot) {
   EXPECT_SAME_LAYOUT(SurfaceMaterial);
   EXPECT_SAME_LAYOUT(Lighting);
   EXPECT_SAME_LAYOUT(TraceCounters);
-  EXPECT_EQ(seen.size(), 11u);
+  EXPECT_SAME_LAYOUT(WideNode);
+  EXPECT_SAME_LAYOUT(WideEntry);
+  EXPECT_SAME_LAYOUT(WideLevel);
+  EXPECT_SAME_LAYOUT(WideCounts);
+  EXPECT_EQ(seen.size(), 15u);
 }
 
 }  // namespace

@@ -1,11 +1,14 @@
 // The wide tree: kernel and twin give the same bits, and what they give is the tree that it was made from.
 #include <gtest/gtest.h>
 
+#include "analysis/wide_tree.h"
 #include "apps/frame.h"
+#include "builders/registry.h"
 #include "pipeline/wide.h"
 #include "scene/hard_cases.h"
 #include "stages/lockstep_executor.h"
 #include "support/lockstep.h"
+#include "support/wide.h"
 
 namespace coppice {
 namespace {
@@ -28,12 +31,75 @@ class WideTree : public DeviceTest, public testing::WithParamInterface<DeviceBui
     ASSERT_FALSE(difference) << what << ": stage " << difference->stage << ", " << difference->slot << "["
                              << difference->index << "]\ncpu " << difference->cpu << "\ngpu "
                              << difference->gpu;
+    const BuildState state = executor.gpu().read(plan.state)[0];
+    EXPECT_EQ(state.error_word, 0u) << what;
+    const WideCounts counts = executor.gpu().read(plan.wide_counts)[0];
+    const auto wide_nodes = executor.gpu().read(Slot<WideNode>{plan.wide_nodes.place, counts.node_count});
+    const std::uint64_t nodes = state.active_count == 0 ? 0 : 2 * std::uint64_t{state.active_count} - 1;
+    EXPECT_EQ(find_wide_fault(wide_nodes, executor.gpu().read(Slot<Node>{plan.nodes.place, nodes})),
+              std::nullopt)
+        << what;
   }
 };
 
 TEST_P(WideTree, SizesUpTo300InLockstep) {
   for (std::uint32_t size = 0; size <= 300; ++size)
     expect_in_lockstep(random_triangles(size, size), std::to_string(size) + " triangles");
+}
+
+TEST_P(WideTree, PowersOfTwoAndTheirNeighboursInLockstep) {
+  for (std::uint32_t exponent = 9; exponent <= 16; ++exponent) {
+    for (const std::uint32_t size : {(1u << exponent) - 1, 1u << exponent, (1u << exponent) + 1})
+      expect_in_lockstep(random_triangles(size, size), std::to_string(size) + " triangles");
+  }
+}
+
+TEST_P(WideTree, EveryHardCaseInLockstep) {
+  for (const HardCase& hard_case : hard_cases()) {
+    const std::uint32_t count = std::min(hard_case.default_triangle_count, 20000u);
+    expect_in_lockstep(scene_arrays(hard_case.make(count, 1)).triangles, std::string(hard_case.name));
+  }
+}
+
+// Levels of more than one block of tiles.
+TEST_P(WideTree, HalfAMillionTrianglesInLockstep) {
+  expect_in_lockstep(random_triangles(500000, 4, 0.004f), "half a million");
+}
+
+class WideTreeOfTheHost : public DeviceTest {
+ protected:
+  static void expect_in_lockstep(std::span<const Node> nodes, uint error_word, const std::string& what) {
+    Layout layout(test_device().properties().max_block_bytes);
+    const UploadedTree uploaded = plan_uploaded(layout, nodes);
+    LockstepExecutor executor(test_device(), layout);
+    upload_tree(executor, uploaded.tree, nodes);
+    const auto difference =
+        executor.run([&](Chain& chain) { append_wide(chain, uploaded.tree, uploaded.wide); });
+    EXPECT_FALSE(difference) << what << ": " << difference->stage << ", " << difference->slot;
+    EXPECT_EQ(executor.gpu().read(uploaded.tree.state)[0].error_word, error_word) << what;
+    const WideCounts counts = executor.gpu().read(uploaded.tree.wide_counts)[0];
+    EXPECT_EQ(counts.node_count == 0, error_word != 0) << what;
+    if (error_word != 0) return;
+    const auto wide =
+        executor.gpu().read(Slot<WideNode>{uploaded.tree.wide_nodes.place, counts.node_count});
+    EXPECT_EQ(find_wide_fault(wide, nodes), std::nullopt) << what;
+    EXPECT_EQ(measure_wide_quality(wide).levels, counts.level_count) << what;
+  }
+};
+
+TEST_F(WideTreeOfTheHost, OfEveryBuilderThatSplitsNoTriangle) {
+  const std::vector<Triangle> triangles = random_triangles(3000, 9);
+  for (const CpuBuilder& builder : cpu_builders()) {
+    const Bvh bvh = builder.build(triangles, {});
+    if (bvh.nodes.size() == 2 * triangles.size() - 1)
+      expect_in_lockstep(bvh.nodes, 0, std::string(builder.name));
+  }
+}
+
+TEST_F(WideTreeOfTheHost, ChainsUpToTheHeightThatIsTaken) {
+  for (const uint height : {1u, 2u, 7u, 8u, 255u, WIDE_MAX_HEIGHT})
+    expect_in_lockstep(chain_of_leaves(height + 1), 0, std::to_string(height));
+  expect_in_lockstep(chain_of_leaves(WIDE_MAX_HEIGHT + 2), ERROR_WIDE_TOO_DEEP, "one too high");
 }
 
 INSTANTIATE_TEST_SUITE_P(Builders, WideTree,
