@@ -8,6 +8,14 @@
 #include "support/spirv_layout.h"
 
 namespace coppice {
+
+// Arrays hide from field_offsets how many members there are.
+template <>
+std::vector<std::uint32_t> field_offsets<WideNode>() {
+  return {offsetof(WideNode, origin), offsetof(WideNode, exponents), offsetof(WideNode, planes),
+          offsetof(WideNode, child)};
+}
+
 namespace {
 
 template <class T>

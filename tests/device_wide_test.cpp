@@ -7,6 +7,7 @@
 #include "pipeline/wide.h"
 #include "scene/hard_cases.h"
 #include "stages/lockstep_executor.h"
+#include "stages/stages.h"
 #include "support/lockstep.h"
 #include "support/wide.h"
 
@@ -80,8 +81,7 @@ class WideTreeOfTheHost : public DeviceTest {
     const WideCounts counts = executor.gpu().read(uploaded.tree.wide_counts)[0];
     EXPECT_EQ(counts.node_count == 0, error_word != 0) << what;
     if (error_word != 0) return;
-    const auto wide =
-        executor.gpu().read(Slot<WideNode>{uploaded.tree.wide_nodes.place, counts.node_count});
+    const auto wide = executor.gpu().read(Slot<WideNode>{uploaded.tree.wide_nodes.place, counts.node_count});
     EXPECT_EQ(find_wide_fault(wide, nodes), std::nullopt) << what;
     EXPECT_EQ(measure_wide_quality(wide).levels, counts.level_count) << what;
   }
@@ -100,6 +100,67 @@ TEST_F(WideTreeOfTheHost, ChainsUpToTheHeightThatIsTaken) {
   for (const uint height : {1u, 2u, 7u, 8u, 255u, WIDE_MAX_HEIGHT})
     expect_in_lockstep(chain_of_leaves(height + 1), 0, std::to_string(height));
   expect_in_lockstep(chain_of_leaves(WIDE_MAX_HEIGHT + 2), ERROR_WIDE_TOO_DEEP, "one too high");
+}
+
+// --- Planted faults: a twin that does its work and one thing wrong.
+
+struct Fault {
+  const StageDeclaration* stage;
+  const char* slot;
+  void (*twin)(const void* args);
+};
+
+template <class Args>
+Args args_of(const void* args) {
+  return *static_cast<const Args*>(args);
+}
+
+constexpr auto one_size_more = [](const void* args) {
+  const auto a = args_of<WideSizesArgs>(args);
+  twins::wide_sizes(a);
+  ++a.sizes[a.levels[a.level].first];
+};
+
+std::vector<Fault> faults() {
+  return {{&stages::wide_root, "clusters_even",
+           [](const void* args) {
+             twins::wide_root(args_of<WideCollapseArgs>(args));
+             args_of<WideCollapseArgs>(args).children[0] ^= 1;
+           }},
+          {&stages::wide_collapse, "wide_levels",
+           [](const void* args) {
+             const auto a = args_of<WideCollapseArgs>(args);
+             twins::wide_collapse(a);
+             ++a.levels[a.level + 1].count;
+           }},
+          {&stages::wide_sizes, "boxes", one_size_more},
+          {&stages::wide_quantise, "wide_nodes", [](const void* args) {
+             const auto a = args_of<WideQuantiseArgs>(args);
+             twins::wide_quantise(a);
+             a.wide_nodes[a.counts[0].node_count - 1].planes[0] ^= 1u << 8;
+           }}};
+}
+
+TEST_F(WideTreeOfTheHost, NamesAPlantedFaultByStageAndSlot) {
+  for (const Fault& fault : faults()) {
+    StageDeclaration faulty = *fault.stage;
+    faulty.twin = fault.twin;
+    Layout layout(test_device().properties().max_block_bytes);
+    BuildPlan plan = plan_build(layout, 3000, {});
+    const WidePlan wide = plan_wide(layout, plan, &plan);
+    LockstepExecutor executor(test_device(), layout);
+    executor.upload(plan.triangles, std::span<const Triangle>(random_triangles(3000, 1)));
+    const auto difference = executor.run([&](Chain& chain) {
+      append_build(chain, plan);
+      append_wide(chain, plan, wide);
+      for (Step& step : chain.steps()) {
+        if (step.stage == fault.stage) step.stage = &faulty;
+      }
+    });
+    ASSERT_TRUE(difference) << fault.stage->name << ": not noticed";
+    EXPECT_EQ(difference->stage, fault.stage->name);
+    EXPECT_EQ(difference->slot, fault.slot) << "in " << fault.stage->name;
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Builders, WideTree,
