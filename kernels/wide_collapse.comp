@@ -1,6 +1,4 @@
 // In:  a level of the wide tree. Out: the next level: of each wide node the binary nodes that are its children.
-// The order of the collapse is that of Ylitie, Karras and Laine 2017, section 4.1, without their costs.
-//
 // The children of a level follow each other in the order of their parents, so the prefix sums of child counts number
 // them. Each level leaves its counts summed by tiles, and a tile of the next dispatch adds up those before it: nobody
 // waits.

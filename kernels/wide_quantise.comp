@@ -11,8 +11,6 @@ layout(push_constant, scalar) uniform Push { WideQuantiseArgs args; };
 
 #include "lib/wide_groups.glsl"
 
-const uint SIZE_MASK = (1u << WIDE_ARRIVAL_SHIFT) - 1u;
-
 struct Grid {
   vec3 origin, cell;
 };
@@ -62,13 +60,8 @@ uint find_place(uint entry) {
   return place;
 }
 
-struct Children {
-  uint next_child;  // entry of the next child that is a wide node
-  uint next_place;  // and where it is
-};
-
-// Writes a child word. Returns the planes as two words: min x, y, z, max x and max y, z.
-uvec2 place_child(uint place, uint slot, uint child, Grid grid, inout Children children) {
+// Writes a child word; `wide_child` is the entry of the next child that is a wide node. Returns the planes as two words: min x, y, z, max x and max y, z.
+uvec2 place_child(uint place, uint slot, uint child, Grid grid, inout uint wide_child) {
   uint word = WIDE_EMPTY;
   uvec3 low = uvec3(255u), high = uvec3(0u);
   if (child != WIDE_EMPTY) {
@@ -76,10 +69,7 @@ uvec2 place_child(uint place, uint slot, uint child, Grid grid, inout Children c
     low = planes_below(grid, node.box_min);
     high = planes_above(grid, node.box_max);
     word = WIDE_LEAF | node.child;
-    if ((child & WIDE_LEAF) == 0u) {
-      word = children.next_place;
-      children.next_place += args.sizes.at[children.next_child++] & SIZE_MASK;
-    }
+    if ((child & WIDE_LEAF) == 0u) word = place + args.offsets.at[wide_child++];
   }
   args.wide_nodes.at[place].child[slot] = word;
   return uvec2(low.x | low.y << 8 | low.z << 16 | high.x << 24, high.y | high.z << 8);
@@ -95,11 +85,11 @@ void main() {
   Grid grid = Grid(root.box_min, cells_of(exponents));
   args.wide_nodes.at[place].origin = grid.origin;
   args.wide_nodes.at[place].exponents = exponents.x | exponents.y << 8 | exponents.z << 16;
-  Children children = Children(entry.first_child, place + 1u);
+  uint wide_child = entry.first_child;
   [[dont_unroll]] for (uint pair = 0u; pair < WIDE_CHILDREN / 2u; ++pair) {
     uint slot = 2u * pair, list = index * WIDE_CHILDREN + slot;
-    uvec2 even = place_child(place, slot, args.children.at[list], grid, children);
-    uvec2 odd = place_child(place, slot + 1u, args.children.at[list + 1u], grid, children);
+    uvec2 even = place_child(place, slot, args.children.at[list], grid, wide_child);
+    uvec2 odd = place_child(place, slot + 1u, args.children.at[list + 1u], grid, wide_child);
     args.wide_nodes.at[place].planes[3u * pair] = even.x;
     args.wide_nodes.at[place].planes[3u * pair + 1u] = even.y | odd.x << 16;
     args.wide_nodes.at[place].planes[3u * pair + 2u] = odd.x >> 16 | odd.y << 16;

@@ -21,9 +21,10 @@ namespace {
 
 // --- A collapse in the words of the paper, without levels, scans or normalised boxes.
 
-float half_area(const Node& node) {
+float weighted_area(const Node& node) {
   const vec3 extent = node.box_max - node.box_min;
-  return extent[0] * extent[1] + extent[1] * extent[2] + extent[2] * extent[0];
+  const float weight = node.height == 1 ? 16.0f : node.height == 2 ? 4.0f : 1.0f;
+  return weight * (extent[0] * extent[1] + extent[1] * extent[2] + extent[2] * extent[0]);
 }
 
 struct PlainNode {
@@ -40,7 +41,7 @@ uint collapse(std::span<const Node> nodes, uint root, std::vector<PlainNode>& wi
     int best = -1;
     for (int c = 0; c < static_cast<int>(children.size()); ++c) {
       if (nodes[children[c]].height == 0) continue;
-      if (best < 0 || half_area(nodes[children[c]]) > half_area(nodes[children[best]])) best = c;
+      if (best < 0 || weighted_area(nodes[children[c]]) > weighted_area(nodes[children[best]])) best = c;
     }
     if (best < 0) break;
     const uint pair = nodes[children[best]].child;
@@ -109,17 +110,19 @@ TEST(WideTreeOfTwins, HardCasesAreValidAndTight) {
   }
 }
 
-// A perfect tree of 2 * 8^k leaves has the most wide nodes: those at the bottom have two leaves each.
+// A perfect tree of 2 * 8^k leaves has the most wide nodes if those at the bottom have two leaves each. So it
+// is where pairs of leaves coincide in points: their nodes have no area and are opened last.
 TEST(WideTreeOfTwins, MeetsItsBoundOnPerfectTrees) {
-  std::vector<Node> level;
   const uint leaves = 2 * 8 * 8 * 8;
   std::vector<Node> nodes(2 * leaves - 1);
   for (uint i = static_cast<uint>(nodes.size()); i-- > 0;) {
     const uint depth = std::bit_width(i + 1) - 1, row = i + 1 - (1u << depth);
     const float width = static_cast<float>(leaves >> depth);
     const bool leaf = 2 * i + 1 >= nodes.size();
-    nodes[i] = {vec3(static_cast<float>(row) * width, 0, 0), leaf ? row : 2 * i + 1,
-                vec3(static_cast<float>(row + 1) * width, 1, 1), leaf ? 0 : nodes[2 * i + 1].height + 1};
+    const vec3 low(static_cast<float>(leaf ? row / 2 * 2 : row) * width, 0, 0),
+        high = low + vec3(width, 1, 1);
+    const uint height = leaf ? 0 : nodes[2 * i + 1].height + 1;
+    nodes[i] = {low, leaf ? row : 2 * i + 1, height < 2 ? low : high, height};
   }
   const std::vector<WideNode> wide = widen_by_twins(nodes);
   EXPECT_EQ(find_wide_fault(wide, nodes), std::nullopt);

@@ -8,6 +8,14 @@
 #include "support/spirv_layout.h"
 
 namespace coppice {
+
+// Arrays hide from field_offsets how many members there are.
+template <>
+std::vector<std::uint32_t> field_offsets<WideNode>() {
+  return {offsetof(WideNode, origin), offsetof(WideNode, exponents), offsetof(WideNode, planes),
+          offsetof(WideNode, child)};
+}
+
 namespace {
 
 template <class T>
@@ -53,7 +61,11 @@ TEST(SharedLayout, ElementsOfEverySlot) {
   EXPECT_SAME_LAYOUT(SurfaceMaterial);
   EXPECT_SAME_LAYOUT(Lighting);
   EXPECT_SAME_LAYOUT(TraceCounters);
-  EXPECT_EQ(seen.size(), 11u);
+  EXPECT_SAME_LAYOUT(WideNode);
+  EXPECT_SAME_LAYOUT(WideEntry);
+  EXPECT_SAME_LAYOUT(WideLevel);
+  EXPECT_SAME_LAYOUT(WideCounts);
+  EXPECT_EQ(seen.size(), 15u);
 }
 
 }  // namespace

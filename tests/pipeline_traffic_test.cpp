@@ -85,10 +85,10 @@ TEST(Traffic, OfWideNodes) {
   for (const Step& step : chain.steps()) {
     if (step.stage) bytes[step.stage->name] += modelled_bytes(step, counts).value();
   }
-  EXPECT_EQ(bytes["wide_root"], 52u + 7 * 64);
-  EXPECT_EQ(bytes["wide_collapse"], 9 * 48u + 8 * 52 + 56 * 64);
-  EXPECT_EQ(bytes["wide_sizes"], 9 * 28u);
-  EXPECT_EQ(bytes["wide_quantise"], 9 * (152u + 32) + 72 * 32);
+  EXPECT_EQ(bytes["wide_root"], 48u + 7 * 64);
+  EXPECT_EQ(bytes["wide_collapse"], 9 * 48u + 8 * 48 + 56 * 64);
+  EXPECT_EQ(bytes["wide_sizes"], 9 * 20u + 8 * 8);
+  EXPECT_EQ(bytes["wide_quantise"], 9 * (148u + 32) + 72 * 32);
 }
 
 TEST(Traffic, OfATraceOfTwoSamples) {

@@ -95,7 +95,7 @@ std::optional<Bytes> ploc_bytes(const Step& step, const RunCounts& counts) {
 Bytes collapse_bytes(Bytes nodes, const RunCounts& counts) {
   if (counts.wide_nodes == 0) return 0;
   const Bytes opened = (Bytes{counts.active_count} - 1) * nodes / counts.wide_nodes;
-  return nodes * (WIDE_CHILDREN * 4 + sizeof(WideEntry) + 4) + opened * 2 * sizeof(Node);
+  return nodes * (WIDE_CHILDREN * 4 + sizeof(WideEntry)) + opened * 2 * sizeof(Node);
 }
 
 std::optional<Bytes> wide_bytes(const Step& step, const RunCounts& counts) {
@@ -107,12 +107,13 @@ std::optional<Bytes> wide_bytes(const Step& step, const RunCounts& counts) {
   if (const auto* a = args_of(step, stages::wide_collapse))
     return level(a->level) * (WIDE_CHILDREN * 4 + sizeof(WideEntry)) +
            collapse_bytes(level(a->level + 1), counts);
-  if (step.stage == &stages::wide_sizes) return nodes * (sizeof(WideEntry) + 2 * 4 + 4);
+  if (const auto* a = args_of(step, stages::wide_sizes))
+    return level(a->level) * (sizeof(WideEntry) + 4) + level(a->level + 1) * (4 + 4);
   if (step.stage == &stages::wide_quantise) {
     if (nodes == 0) return 0;
     const Bytes children =
         counts.active_count + nodes - 1;  // each leaf and each wide node but the root is one
-    return nodes * (sizeof(WideEntry) + 2 * 4 + WIDE_CHILDREN * 4 + sizeof(WideNode)) +
+    return nodes * (sizeof(WideEntry) + 4 + WIDE_CHILDREN * 4 + sizeof(WideNode)) +
            (children + nodes) * sizeof(Node);
   }
   return std::nullopt;

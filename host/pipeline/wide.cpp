@@ -72,35 +72,34 @@ void append_wide(Chain& chain, const TreeSlots& tree, const WidePlan& plan) {
   chain.clear(plan.tile_sums);
   chain.clear(plan.block_sums);
   if (plan.levels_bound == 0) return;
+  const auto groups_of = [&](std::uint32_t level) {
+    return Place{plan.levels.place.block,
+                 plan.levels.place.offset + level * sizeof(WideLevel) + offsetof(WideLevel, groups)};
+  };
+  const auto entries = chain.at(plan.entries);
+  const auto children = chain.at(plan.children), sizes = chain.at(plan.sizes);
+  const auto offsets = chain.at(plan.offsets);
+  const auto levels = chain.at(plan.levels);
+  const auto counts = chain.at(tree.wide_counts);
   WideCollapseArgs collapse{chain.at(tree.nodes),
-                            chain.at(plan.entries),
-                            chain.at(plan.children),
-                            chain.at(plan.sizes),
+                            entries,
+                            children,
                             chain.at(plan.tile_sums),
                             chain.at(plan.block_sums),
-                            chain.at(plan.levels),
-                            chain.at(tree.wide_counts),
+                            levels,
+                            counts,
                             chain.at(tree.state),
                             0,
                             0};
   chain.run(stages::wide_root, collapse, {1, 1, 1});
-  for (; collapse.level < plan.levels_bound; ++collapse.level) {
-    const std::uint64_t level = collapse.level * sizeof(WideLevel);
-    chain.run_indirect(
-        stages::wide_collapse, collapse,
-        {plan.levels.place.block, plan.levels.place.offset + level + offsetof(WideLevel, groups)});
-  }
-  const Place groups{tree.wide_counts.place.block,
-                     tree.wide_counts.place.offset + offsetof(WideCounts, groups)};
-  chain.run_indirect(
-      stages::wide_sizes,
-      {chain.at(plan.entries), chain.at(plan.sizes), chain.at(plan.offsets), chain.at(tree.wide_counts)},
-      groups);
+  for (; collapse.level < plan.levels_bound; ++collapse.level)
+    chain.run_indirect(stages::wide_collapse, collapse, groups_of(collapse.level));
+  for (std::uint32_t level = plan.levels_bound; level-- > 0;)
+    chain.run_indirect(stages::wide_sizes, {entries, sizes, offsets, levels, level, 0}, groups_of(level));
   chain.run_indirect(
       stages::wide_quantise,
-      {chain.at(tree.nodes), chain.at(plan.entries), chain.at(plan.children), chain.at(plan.sizes),
-       chain.at(plan.offsets), chain.at(tree.wide_counts), chain.at(tree.wide_nodes)},
-      groups);
+      {chain.at(tree.nodes), entries, children, offsets, counts, chain.at(tree.wide_nodes)},
+      Place{tree.wide_counts.place.block, tree.wide_counts.place.offset + offsetof(WideCounts, groups)});
 }
 
 }  // namespace coppice

@@ -21,7 +21,8 @@ std::array<uint, WIDE_CHILDREN> wide_children(NodeBuffer nodes, uint root) {
   const Normalisation normalise(Aabb{nodes[0].box_min, nodes[0].box_max});
   const auto area = [&](uint child) {
     const Aabb box{normalise(nodes[child].box_min), normalise(nodes[child].box_max)};
-    return union_area(box, box);
+    const float weights[] = {0, WIDE_HEIGHT_1_WEIGHT, WIDE_HEIGHT_2_WEIGHT, 1};
+    return weights[std::min(nodes[child].height, 3u)] * union_area(box, box);
   };
   std::vector<uint> children = {word_of(nodes, root)};
   while (children.size() < WIDE_CHILDREN) {
@@ -62,7 +63,6 @@ void enter_wide_node(const WideCollapseArgs& args, const WideLevel& level, uint 
   const uint entry = level.first + index;
   std::ranges::copy(children, &args.children[std::size_t{entry} * WIDE_CHILDREN]);
   args.entries[entry] = {root, parent, 0, child_count};
-  args.sizes[entry] = 1;
   args.tile_sums[level.first_tile + index / WIDE_TILE] += child_count;
   args.block_sums[level.first_block + index / WIDE_TILE / WIDE_BLOCK] += child_count;
 }

@@ -35,8 +35,10 @@ const uint WIDE_BLOCK = 64;  // tiles that are summed together
 const uint WIDE_MAX_HEIGHT = 256;     // of the binary tree; so levels of the wide one, at most
 const uint WIDE_LEAST_EXPONENT = 27;  // biased, of a step: 2^-100, so that no plane is denormal
 
-// In the word of a wide node's size, above the size itself: how many of its children have reported.
-const uint WIDE_ARRIVAL_SHIFT = 28;
+// A child of height 1 or 2 counts with its area times these, so that few wide nodes have only two or three
+// children.
+const float WIDE_HEIGHT_1_WEIGHT = 16.0;
+const float WIDE_HEIGHT_2_WEIGHT = 4.0;
 
 // What is known of a wide node before it has its place; indices are breadth-first.
 struct WideEntry {
@@ -52,7 +54,7 @@ struct WideLevel {
   uint count;       // of entries
   uint first_tile;  // its place in tile_sums
   uint first_block;
-  uvec3 groups;  // of the dispatch that finds its children
+  uvec3 groups;  // of dispatches over its tiles
   uint padding;
 };
 
@@ -69,9 +71,8 @@ INTERFACE_BUFFER(WideCountsBuffer, WideCounts, 16)
 
 struct WideCollapseArgs {
   NodeBuffer nodes;         // the binary tree
-  WideEntryBuffer entries;  // one a wide node, like children and sizes
+  WideEntryBuffer entries;  // one a wide node, like children
   UintBuffer children;      // WIDE_CHILDREN each: binary nodes, leaves with WIDE_LEAF; or WIDE_EMPTY
-  UintBuffer sizes;         // set to 1 for new wide nodes
   UintBuffer tile_sums;     // children that are wide nodes, by tile; zero before
   UintBuffer block_sums;    // the same by WIDE_BLOCK tiles
   WideLevelBuffer levels;   // one more than there may be; zero before
@@ -83,16 +84,17 @@ struct WideCollapseArgs {
 
 struct WideSizesArgs {
   WideEntryBuffer entries;
-  CoherentUintBuffer sizes;  // out: wide nodes of the subtree, below WIDE_ARRIVAL_SHIFT
-  UintBuffer offsets;        // out: place in depth-first order, counted from the parent's; none for the root
-  WideCountsBuffer counts;
+  UintBuffer sizes;    // out: wide nodes of the subtree
+  UintBuffer offsets;  // out: of the children, their places in depth-first order counted from the parent's
+  WideLevelBuffer levels;
+  uint level;
+  uint padding;
 };
 
 struct WideQuantiseArgs {
   NodeBuffer nodes;
   WideEntryBuffer entries;
   UintBuffer children;
-  UintBuffer sizes;
   UintBuffer offsets;
   WideCountsBuffer counts;
   WideNodeBuffer wide_nodes;  // node_count, in depth-first order

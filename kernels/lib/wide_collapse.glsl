@@ -1,9 +1,9 @@
-// Which binary nodes become the children of a wide node: the greedy rule of Wald, Benthin and Boulos, "Getting Rid of
-// Packets", 2008, section 2.
+// Which binary nodes become the children of a wide node: greedily, after Wald, Benthin and Boulos, "Getting Rid of
+// Packets", 2008.
 //
 // It starts with the root of the wide node as the only child. As long as there are fewer than eight, the internal child
-// of largest half area, of equal ones the first, gives its place to its first child, and its second child is appended.
-// Areas are normalised, and none decides that could be denormal or infinite: docs/numerics.md.
+// of largest weighted half area, of equal ones the first, gives its place to its first child, and its second child is
+// appended. Areas are normalised, so none that is denormal or infinite decides: docs/numerics.md.
 #include "lib/normalised.glsl"
 
 const float NEVER_OPENED = -1.0;  // below every area
@@ -17,6 +17,7 @@ struct Candidate {
 Candidate candidate(uint index, Node node, Normalisation normalisation) {
   precise vec3 extent = normalised(node.box_max, normalisation) - normalised(node.box_min, normalisation);
   precise float area = extent.x * extent.y + extent.y * extent.z + extent.z * extent.x;
+  area *= node.height == 1u ? WIDE_HEIGHT_1_WEIGHT : (node.height == 2u ? WIDE_HEIGHT_2_WEIGHT : 1.0);
   return node.height == 0u ? Candidate(index | WIDE_LEAF, 0u, NEVER_OPENED) : Candidate(index, node.child, area);
 }
 
@@ -54,7 +55,6 @@ uint collapse(uint entry, uint root, Normalisation normalisation) {
 void enter(uint entry, uint root, uint parent, uint index, uint tile, uint block, Normalisation normalisation) {
   uint child_count = collapse(entry, root, normalisation);
   args.entries.at[entry] = WideEntry(root, parent, 0u, child_count);
-  args.sizes.at[entry] = 1u;
   // Partners: these lines, for the other nodes of the tile and the block. Sums do not depend on their order.
   atomicAdd(args.tile_sums.at[tile + index / WIDE_TILE], child_count);
   atomicAdd(args.block_sums.at[block + index / (WIDE_TILE * WIDE_BLOCK)], child_count);
