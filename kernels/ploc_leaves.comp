@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "interface/ploc.h"
 #include "lib/ploc_round.glsl"
-#include "lib/wide_words.glsl"
+#include "lib/node_words.glsl"
 
 layout(local_size_x = PLOC_LEAVES_GROUP) in;
 layout(push_constant, scalar) uniform Push { PlocLeavesArgs args; };

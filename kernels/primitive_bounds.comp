@@ -4,7 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "interface/bounds.h"
 #include "lib/ordered_float.glsl"
-#include "lib/wide_words.glsl"
+#include "lib/node_words.glsl"
 
 layout(local_size_x = PRIMITIVE_BOUNDS_GROUP) in;
 layout(push_constant, scalar) uniform Push { PrimitiveBoundsArgs args; };

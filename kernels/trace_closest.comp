@@ -3,6 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/trace.h"
+#include "lib/node_words.glsl"
 #include "lib/ray_words.glsl"
 #include "lib/trace_counters.glsl"
 #include "lib/trace_ray.glsl"
@@ -41,7 +42,7 @@ bool visit_child(Node child, TraceRay ray, inout Hit hit, out float enter) {
 }
 
 void visit_pair(TraceRay ray, inout Hit hit, inout Traversal state) {
-  Node left = args.nodes.at[state.pair], right = args.nodes.at[state.pair + 1u];
+  Node left = load_node(args.nodes, state.pair), right = load_node(args.nodes, state.pair + 1u);
   float left_enter, right_enter;
   bool go_left = visit_child(left, ray, hit, left_enter);
   bool go_right = visit_child(right, ray, hit, right_enter);

@@ -9,6 +9,7 @@
 layout(local_size_x = WIDE_GROUP) in;
 layout(push_constant, scalar) uniform Push { WideQuantiseArgs args; };
 
+#include "lib/node_words.glsl"
 #include "lib/wide_groups.glsl"
 
 struct Grid {
@@ -65,7 +66,7 @@ uvec2 place_child(uint place, uint slot, uint child, Grid grid, inout uint wide_
   uint word = WIDE_EMPTY;
   uvec3 low = uvec3(255u), high = uvec3(0u);
   if (child != WIDE_EMPTY) {
-    Node node = args.nodes.at[child & ~WIDE_LEAF];
+    Node node = load_node(args.nodes, child & ~WIDE_LEAF);
     low = planes_below(grid, node.box_min);
     high = planes_above(grid, node.box_max);
     word = WIDE_LEAF | node.child;
@@ -80,7 +81,7 @@ void main() {
   if (index >= args.counts.at[0].node_count) return;
   WideEntry entry = args.entries.at[index];
   uint place = find_place(index);
-  Node root = args.nodes.at[entry.root];
+  Node root = load_node(args.nodes, entry.root);
   uvec3 exponents = cell_exponents(root);
   Grid grid = Grid(root.box_min, cells_of(exponents));
   args.wide_nodes.at[place].origin = grid.origin;

@@ -6,7 +6,7 @@
 //
 // The including kernel defines RADIUS, a specialization constant, and `args` with clusters_in and partners.
 #include "lib/ploc_box.glsl"
-#include "lib/wide_words.glsl"
+#include "lib/node_words.glsl"
 
 const uint LANES = gl_WorkGroupSize.x;
 const uint BLOCKS_AHEAD = (RADIUS + LANES - 1u) / LANES;  // that a cluster may merge with

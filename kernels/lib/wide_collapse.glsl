@@ -4,6 +4,7 @@
 // It starts with the root of the wide node as the only child. As long as there are fewer than eight, the internal child
 // of largest weighted half area, of equal ones the first, gives its place to its first child, and its second child is
 // appended. Areas are normalised, so none that is denormal or infinite decides: docs/numerics.md.
+#include "lib/node_words.glsl"
 #include "lib/normalised.glsl"
 
 const float NEVER_OPENED = -1.0;  // below every area
@@ -25,7 +26,7 @@ Candidate candidate(uint index, Node node, Normalisation normalisation) {
 uint collapse(uint entry, uint root, Normalisation normalisation) {
   Candidate candidates[WIDE_CHILDREN];
   [[unroll]] for (uint c = 0u; c < WIDE_CHILDREN; ++c) candidates[c] = Candidate(WIDE_EMPTY, 0u, NEVER_OPENED);
-  candidates[0] = candidate(root, args.nodes.at[root], normalisation);
+  candidates[0] = candidate(root, load_node(args.nodes, root), normalisation);
   [[unroll]] for (uint count = 1u; count < WIDE_CHILDREN; ++count) {
     uint opened = 0u;
     Candidate largest = candidates[0];
@@ -36,8 +37,8 @@ uint collapse(uint entry, uint root, Normalisation normalisation) {
       }
     }
     if (largest.area != NEVER_OPENED) {
-      Candidate left = candidate(largest.pair, args.nodes.at[largest.pair], normalisation);
-      candidates[count] = candidate(largest.pair + 1u, args.nodes.at[largest.pair + 1u], normalisation);
+      Candidate left = candidate(largest.pair, load_node(args.nodes, largest.pair), normalisation);
+      candidates[count] = candidate(largest.pair + 1u, load_node(args.nodes, largest.pair + 1u), normalisation);
       [[unroll]] for (uint c = 0u; c < count; ++c) {
         if (c == opened) candidates[c] = left;
       }
