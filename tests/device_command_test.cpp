@@ -121,11 +121,38 @@ TEST_F(Command, RoundsEndWithOneCluster) {
 
 TEST_F(Command, RenderSplitsItsTimeOnlyWhenAsked) {
   const Outcome plain = run("render terrain:500 --size 64x48 -o out.png");
-  EXPECT_EQ(plain.out.find("trace_closest"), std::string::npos) << plain.out;
-  const Outcome asked = run("render terrain:500 --size 64x48 -o out.png --kernels");
+  EXPECT_EQ(plain.out.find("primitive_bounds"), std::string::npos) << plain.out;
+  const Outcome asked = run("render terrain:500 --size 64x48 --tree binary -o out.png --kernels");
   ASSERT_EQ(asked.status, 0) << asked.err;
   for (const char* part : {"primitive_bounds", "trace_closest", "of copy"})
     EXPECT_NE(asked.out.find(part), std::string::npos) << part;
+}
+
+TEST_F(Command, BothTreesGiveTheSamePicture) {
+  for (const char* builder : {"gpu-ploc", "sah"}) {
+    std::vector<nlohmann::json> pictures;
+    for (const char* tree : {"binary", "wide"}) {
+      const Outcome outcome =
+          run(std::string("render terrain:5000 --size 100x75 --spp 2 --validate -o out.png "
+                          "--json - --builder ") +
+              builder + " --tree " + tree);
+      ASSERT_EQ(outcome.status, 0) << outcome.err;
+      pictures.push_back(nlohmann::json::parse(outcome.out));
+      EXPECT_EQ(pictures.back()["tree"], tree);
+    }
+    EXPECT_EQ(pictures[0]["image_hash"], pictures[1]["image_hash"]) << builder;
+    EXPECT_EQ(pictures[0]["hits"], pictures[1]["hits"]) << builder;
+    EXPECT_EQ(pictures[0]["wide_ms"], 0);
+    EXPECT_GT(pictures[1]["wide_ms"], 0);
+  }
+}
+
+TEST_F(Command, AWideTreeNeedsTheAccurateTests) {
+  for (const char* flags : {"--triangle-test fast", "--box-test fast", "--builder none"}) {
+    const Outcome outcome = run(std::string("render terrain:500 --size 8x8 --tree wide -o out.png ") + flags);
+    EXPECT_NE(outcome.status, 0) << flags;
+    EXPECT_NE(outcome.err.find("--tree wide"), std::string::npos) << outcome.err;
+  }
 }
 
 TEST_F(Command, BenchChecksAndTimes) {
@@ -141,7 +168,7 @@ TEST_F(Command, BenchChecksAndTimes) {
                {"build --most 12000", "gpu-lbvh", 3 * 2, 12000, "hploc_build_ms"},
                {"build --most 10000 --builder gpu-ploc,gpu-hploc", "gpu-hploc", 2, 10000,
                 "ploc_merge_percent_of_copy"},
-               {"trace terrain:500 --size 32x24 --builder gpu-lbvh", "trace_diffuse", 2, 0, "frame_ms"}};
+               {"trace terrain:500 --size 32x24 --builder gpu-lbvh", "trace_diffuse", 4, 0, "frame_ms"}};
   for (const auto& c : cases) {
     const Outcome outcome =
         run(std::string("bench ") + c.arguments + " --runs 2 --validate --csv rows.csv --json -");

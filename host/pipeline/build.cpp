@@ -58,7 +58,7 @@ void append_onesweep(Chain& chain, const BuildPlan& plan) {
     const int in = (sort.passes - pass) % 2, out = 1 - in;
     chain.run(stages::sort_pass,
               {chain.at(plan.keys[in]), values_at(chain, plan, in), chain.at(plan.keys[out]),
-               chain.at(plan.values[out]), chain.at(plan.histogram, pass * SORT_DIGITS),
+               values_at(chain, plan, out), chain.at(plan.histogram, pass * SORT_DIGITS),
                chain.at(plan.sort_status, std::uint64_t{pass} * sort.tile_count * SORT_DIGITS),
                chain.at(plan.sort_tickets, pass), chain.at(plan.state), n, key_words, pass, sort.tile_keys},
               {sort.tile_count, 1, 1}, constants);
@@ -71,9 +71,9 @@ void append_scanned_sort(Chain& chain, const BuildPlan& plan) {
   for (std::uint32_t pass = 0; pass < sort.passes; ++pass) {
     const int in = (sort.passes - pass) % 2, out = 1 - in;
     const SortScatterArgs args{chain.at(plan.keys[in]),
-                               chain.at(plan.values[in]),
+                               values_at(chain, plan, in),
                                chain.at(plan.keys[out]),
-                               chain.at(plan.values[out]),
+                               values_at(chain, plan, out),
                                chain.at(plan.sort_digits),
                                plan.triangle_count,
                                key_words,
