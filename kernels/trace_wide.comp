@@ -59,8 +59,11 @@ uint list_met(WideChildren children, RayBundle bundle, float farthest) {
     uint other = of_child(key, child);
     [[unroll]] for (uint slot = 0u; slot < SLOTS; ++slot) rank[slot] += other < key[slot] ? 1u : 0u;
   }
+  // Where several invocations hold the same child the first one counts: the keys of the others may differ by a zero's
+  // sign.
+  bool counts = gl_SubgroupInvocationID < WIDE_CHILDREN;
   [[unroll]] for (uint slot = 0u; slot < SLOTS; ++slot)
-    list |= key[slot] == 0xffffffffu ? 0u : (LISTED | held_child(slot)) << (4u * rank[slot]);
+    list |= counts && key[slot] != 0xffffffffu ? (LISTED | held_child(slot)) << (4u * rank[slot]) : 0u;
   return packet_or(list);
 }
 

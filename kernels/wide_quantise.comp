@@ -61,7 +61,8 @@ uint find_place(uint entry) {
   return place;
 }
 
-// Writes a child word; `wide_child` is the entry of the next child that is a wide node. Returns the planes as two words: min x, y, z, max x and max y, z.
+// Writes a child word; `wide_child` is the entry of the next child that is a wide node. Returns the planes as two words:
+// min x, y, z, max x and max y, z.
 uvec2 place_child(uint place, uint slot, uint child, Grid grid, inout uint wide_child) {
   uint word = WIDE_EMPTY;
   uvec3 low = uvec3(255u), high = uvec3(0u);

@@ -121,6 +121,17 @@ TEST_F(TraceWide, APictureInLockstep) {
   }
 }
 
+TEST_F(TraceWide, TooFewTurnsAreReportedByName) {
+  const std::vector<Triangle> triangles = random_triangles(5000, 3, 0.1f);
+  const std::vector<Ray> rays = hard_rays(RayKind::VERTICES, triangles, {}, 100, 4);
+  const Bvh bvh = build_ploc(triangles, {});
+  RayTracing tracing(test_device(), bvh.nodes, triangles, 100, true);
+  TraceOptions options = options_for(true);
+  options.max_turns = 3;
+  const TracedRays traced = tracing.on_device(rays, options);
+  EXPECT_NE(describe_error_word(traced.error_word).find("trace_wide"), std::string::npos);
+}
+
 TEST_F(TraceWide, IsRefusedWithTestsThatDependOnTheOrder) {
   Layout layout;
   TreeSlots tree = plan_tree(layout, 1, 1);

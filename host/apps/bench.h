@@ -49,8 +49,8 @@ void bench_build(CheckedDevice& device, const Options& options, const AddRow& ad
 void bench_trace(CheckedDevice& device, const Options& options, const AddRow& add);
 
 // One row of bench_sort; `count` is a multiple of 4, `preset` one of its kinds of keys.
-BenchRow bench_keys(CheckedDevice& device, const Options& options, std::uint32_t count, std::uint32_t key_words,
-                    bool has_values, const std::string& preset);
+BenchRow bench_keys(CheckedDevice& device, const Options& options, std::uint32_t count,
+                    std::uint32_t key_words, bool has_values, const std::string& preset);
 
 struct NamedBench {
   const char* name;

@@ -68,11 +68,10 @@ std::string sort_name(std::uint32_t key_words, bool has_values) {
 
 }  // namespace
 
-BenchRow bench_keys(CheckedDevice& device, const Options& options, std::uint32_t count, std::uint32_t key_words,
-                    bool has_values, const std::string& preset) {
+BenchRow bench_keys(CheckedDevice& device, const Options& options, std::uint32_t count,
+                    std::uint32_t key_words, bool has_values, const std::string& preset) {
   Layout layout(device.device.properties().max_block_bytes);
-  const BuildPlan plan =
-      plan_sort(layout, count, device.build_options(options, 30 * key_words), has_values);
+  const BuildPlan plan = plan_sort(layout, count, device.build_options(options, 30 * key_words), has_values);
   const auto given_keys = layout.add<uint>("given_keys", plan.keys[0].count);
   const auto given_values = layout.add<uint>("given_values", plan.values[0].count);
   GpuExecutor executor(device.device, layout);
@@ -97,7 +96,8 @@ BenchRow bench_keys(CheckedDevice& device, const Options& options, std::uint32_t
     const Recorder::Times times = recorder.submit_and_wait(limit_seconds);
     return times.total_ms - times.marks_ms.at(0);
   };
-  return bench_row(sort_name(key_words, has_values), preset, count, measure_steady(steady_options(options, run()), run));
+  return bench_row(sort_name(key_words, has_values), preset, count,
+                   measure_steady(steady_options(options, run()), run));
 }
 
 void bench_sort(CheckedDevice& device, const Options& options, const AddRow& add) {

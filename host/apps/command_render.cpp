@@ -5,6 +5,7 @@
 #include "analysis/tree_hash.h"
 #include "apps/frame.h"
 #include "apps/render_frame.h"
+#include "scene/input_error.h"
 #include "scene/scene_source.h"
 #include "scene/write_png.h"
 
@@ -76,6 +77,8 @@ void print_render(const RenderReport& report, const Options& options, double loa
 }  // namespace
 
 int run_render(const Options& options) {
+  if (options.tracer == "cpu" && options.tree == "wide")
+    throw InputError("--tree wide is for the tracer on the device, not for --tracer cpu");
   check_writable(options.output);
   const auto load_start = Clock::now();
   const Scene scene = open_scene(options.scene);

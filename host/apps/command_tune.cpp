@@ -70,6 +70,8 @@ Json tune_stage(CheckedDevice& device, const VariantStage& stage, Workload workl
 int run_tune(const Options& options) {
   CheckedDevice device = open_device(options);
   const DeviceProperties& properties = device.device.properties();
+  if (!device.lookback)
+    throw DeviceError("without lookback there is one variant of each stage, and nothing to tune");
   if (talks(options)) {
     std::printf("%s, %s\n  %-10s %-15s %10s %10s %10s\n", properties.name.c_str(), properties.driver.c_str(),
                 "stage", "variant", "median ms", "min", "max");

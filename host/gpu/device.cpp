@@ -79,7 +79,7 @@ void for_each_feature(FeatureChain& chain, Visit visit) {
 std::string why_unsuitable(const vk::raii::PhysicalDevice& physical) {
   const auto properties =
       physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties,
-                              vk::PhysicalDeviceVulkan12Properties>();
+                              vk::PhysicalDeviceVulkan12Properties, vk::PhysicalDeviceVulkan13Properties>();
   const auto& core = properties.get<vk::PhysicalDeviceProperties2>().properties;
   if (core.apiVersion < VK_API_VERSION_1_3) return "no Vulkan 1.3";
   const auto& subgroups = properties.get<vk::PhysicalDeviceVulkan11Properties>();
@@ -89,6 +89,10 @@ std::string why_unsuitable(const vk::raii::PhysicalDevice& physical) {
   if ((subgroups.subgroupSupportedOperations & needed) != needed) return "no subgroup arithmetic or shuffle";
   if (subgroups.subgroupSize < 4) return "subgroups of fewer than 4 invocations";
   if (subgroups.subgroupSize > 64) return "subgroups of more than 64 invocations";
+  const auto& sizes = properties.get<vk::PhysicalDeviceVulkan13Properties>();
+  if (sizes.minSubgroupSize < sizes.maxSubgroupSize &&
+      !(sizes.requiredSubgroupSizeStages & vk::ShaderStageFlagBits::eCompute))
+    return "subgroups of several sizes, and none can be required";
   const auto& floats = properties.get<vk::PhysicalDeviceVulkan12Properties>();
   if (!floats.shaderRoundingModeRTEFloat32) return "no rounding to nearest even";
   if (!floats.shaderSignedZeroInfNanPreserveFloat32) return "no infinities and NaN";
@@ -153,6 +157,8 @@ DeviceProperties describe(const VulkanContext& context, std::uint32_t timestamp_
   properties.driver = driver.driverInfo.data();
   properties.type = device_type(core.deviceType);
   properties.subgroup_size = chain.get<vk::PhysicalDeviceVulkan11Properties>().subgroupSize;
+  const auto& sizes = chain.get<vk::PhysicalDeviceVulkan13Properties>();
+  properties.has_subgroup_sizes = sizes.minSubgroupSize < sizes.maxSubgroupSize;
   properties.max_block_bytes =
       std::min<std::uint64_t>(chain.get<vk::PhysicalDeviceVulkan11Properties>().maxMemoryAllocationSize,
                               chain.get<vk::PhysicalDeviceVulkan13Properties>().maxBufferSize);

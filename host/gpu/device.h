@@ -42,6 +42,7 @@ struct DeviceProperties {
   std::string driver;
   DeviceType type;
   std::uint32_t subgroup_size;
+  bool has_subgroup_sizes;        // to choose from, for each kernel
   std::uint64_t max_block_bytes;  // largest single allocation
   double timestamp_period_ns;     // 0: no timestamps
   bool shared_memory;             // the host maps the device's memory

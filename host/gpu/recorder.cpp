@@ -50,8 +50,11 @@ vk::raii::Pipeline make_pipeline(const VulkanContext& context, const Kernel& ker
   const bool whole = local_size_x(kernel) % context.properties.subgroup_size == 0;
   const auto flags = whole ? vk::PipelineShaderStageCreateFlagBits::eRequireFullSubgroups
                            : vk::PipelineShaderStageCreateFlags();
-  const vk::PipelineShaderStageCreateInfo stage(flags, vk::ShaderStageFlagBits::eCompute, *module, "main",
-                                                &specialization);
+  // Without it a driver may take any of its sizes.
+  const vk::PipelineShaderStageRequiredSubgroupSizeCreateInfo size(context.properties.subgroup_size);
+  const vk::PipelineShaderStageCreateInfo stage(
+      flags, vk::ShaderStageFlagBits::eCompute, *module, "main", &specialization,
+      whole && context.properties.has_subgroup_sizes ? &size : nullptr);
   return vk::raii::Pipeline(context.device, context.pipeline_cache,
                             vk::ComputePipelineCreateInfo({}, stage, *context.pipeline_layout));
 }

@@ -109,7 +109,8 @@ BuildPlan plan_build(Layout& layout, std::uint32_t triangle_count, const BuildOp
 BuildPlan plan_sort(Layout& layout, std::uint32_t key_count, const BuildOptions& options,
                     bool has_values = true);
 
-// The pairs in unsorted_keys and unsorted_values, or the keys alone, sorted stably by key, to keys[0] and values[0].
+// The pairs in unsorted_keys and unsorted_values, or the keys alone, sorted stably by key, to keys[0] and
+// values[0].
 void append_sort(Chain& chain, const BuildPlan& plan);
 
 // Triangles to tree: bounds, Morton codes, sort, and the builder of the options.

@@ -1,6 +1,7 @@
 #include "pipeline/ray_tracing.h"
 
 #include "pipeline/traffic.h"
+#include "stages/errors.h"
 
 namespace coppice {
 
@@ -47,6 +48,8 @@ void RayTracing::convert() {
   cpu_.upload(slots_.tree.state, state);
   append_wide(by_twins, slots_.tree, *slots_.wide);
   cpu_.run(by_twins.steps());
+  if (const std::uint32_t error_word = gpu_.read(slots_.tree.state)[0].error_word)
+    throw DeviceError(describe_error_word(error_word));
 }
 
 template <class Executor>

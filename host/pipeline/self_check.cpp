@@ -32,7 +32,6 @@ std::vector<Triangle> scattered_triangles() {
 bool builds_right(Device& device, const Variants& variants, bool lookback,
                   const std::function<void(std::vector<Step>&)>& fault) {
   BuildOptions options;
-  options.radius = 2;
   options.lookback = lookback;
   options.variants = variants;
   Layout layout(device.properties().max_block_bytes);

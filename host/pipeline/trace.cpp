@@ -26,7 +26,7 @@ void append_closest_hits(Chain& chain, const TreeSlots& tree, const RaySlots& sl
   const auto hits = chain.at(slots.hits);
   const auto counters = chain.at(slots.counters);
   if (options.wide) {
-    if (options.triangle_test != TRIANGLE_WATERTIGHT || options.box_test != BOX_ROBUST)
+    if (options.brute_force || options.triangle_test != TRIANGLE_WATERTIGHT || options.box_test != BOX_ROBUST)
       throw std::invalid_argument("the wide tree is traced with the watertight and the robust test");
     chain.run(stages::trace_wide,
               {chain.at(tree.wide_nodes), chain.at(tree.wide_counts), chain.at(tree.nodes), triangles, rays,

@@ -41,7 +41,8 @@ std::optional<Bytes> sort_bytes(const Step& step) {
   if (const auto* a = args_of(step, stages::sort_digit_scan)) return Bytes{a->pass_count} * 2 * digit_row;
   // Status words are written as aggregate and as prefix, and read by the next tile.
   if (const auto* a = args_of(step, stages::sort_pass))
-    return pairs_moved(a->count, a->key_words, a->values_in.value != 0) + tiles(a->count, a->tile_keys) * 3 * digit_row;
+    return pairs_moved(a->count, a->key_words, a->values_in.value != 0) +
+           tiles(a->count, a->tile_keys) * 3 * digit_row;
   if (const auto* a = args_of(step, stages::sort_tile_counts))
     return Bytes{a->count} * 4 + tile_digits_bytes(*a);
   if (const auto* a = args_of(step, stages::sort_tile_scan))

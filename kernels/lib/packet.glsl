@@ -1,4 +1,5 @@
 // Values of a subgroup whose invocations walk together. The invocations of a packet are always all active.
+#include "lib/selected.glsl"
 
 layout(constant_id = DEVICE_SUBGROUP_SIZE_ID) const uint LANES = 8u;
 
