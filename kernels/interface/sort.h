@@ -1,6 +1,7 @@
 // LSD radix sort of (key, value) pairs; keys of one or two words, low word first. Two ways to the same order:
-// Onesweep (sort_histogram, sort_digit_scan and a sort_pass a digit), whose tiles get their prefixes by lookback, and
-// counting, scanning and scattering (sort_tile_counts, sort_tile_scan and sort_scatter a digit), which never wait.
+// Onesweep (sort_histogram, sort_digit_scan and a sort_pass a digit), whose tiles get their prefixes by
+// lookback, and counting, scanning and scattering (sort_tile_counts, sort_tile_scan and sort_scatter a
+// digit), which never wait.
 #ifndef COPPICE_INTERFACE_SORT_H
 #define COPPICE_INTERFACE_SORT_H
 #include "types.h"
@@ -17,16 +18,17 @@ const uint SORT_HISTOGRAM_RUN = 2048;
 const uint SORT_HISTOGRAM_TILE = SORT_HISTOGRAM_GROUP * SORT_HISTOGRAM_RUN;
 const uint SORT_HISTOGRAM_ROW = SORT_PASSES_PER_WORD * SORT_DIGITS / 2;
 
-// A pass ranks the keys of a tile in rows of counters, consecutive keys in each. Either an invocation has a row, and
-// ranks its keys one by one; or a subgroup has one, and ranks as many keys at once as it has invocations.
+// A pass ranks the keys of a tile in rows of counters, consecutive keys in each. Either an invocation has a
+// row, and ranks its keys one by one; or a subgroup has one, and ranks as many keys at once as it has
+// invocations.
 const uint SORT_MAX_ROWS = 16;
 const uint SORT_RUNS_GROUP = 16;
 const uint SORT_RUNS_TILE = 16384;
 const uint SORT_MATCH_GROUP = 64;  // at least 4 to a subgroup, so at most SORT_MAX_ROWS
 const uint SORT_MATCH_TILE = 4096;
 
-// Of counting, scanning and scattering: the digits have 8 or 11 bits, and a tile, which one subgroup takes, at least
-// SORT_SCAN_TILE keys.
+// Of counting, scanning and scattering: the digits have 8 or 11 bits, and a tile, which one subgroup takes,
+// at least SORT_SCAN_TILE keys.
 const uint SORT_NARROW_BITS = 8;
 const uint SORT_WIDE_BITS = 11;
 const uint SORT_SCAN_TILE = 16384;
@@ -58,13 +60,13 @@ struct SortPassArgs {
   uint tile_keys;  // SORT_RUNS_TILE or SORT_MATCH_TILE
 };
 
-// Shared by counting and scattering. The digit is that of `digit_bits` bits from bit `digit_shift` of the key's
-// `digit_word`-th word; above bit 31 there are zeroes.
+// Shared by counting and scattering. The digit is that of `digit_bits` bits from bit `digit_shift` of the
+// key's `digit_word`-th word; above bit 31 there are zeroes.
 struct SortScatterArgs {
   UintBuffer keys_in, values_in;
   UintBuffer keys_out, values_out;
-  // tiles << digit_bits. sort_tile_counts leaves counts, sort_tile_scan where the first key of each tile and digit
-  // goes, sort_scatter where one more would go.
+  // tiles << digit_bits. sort_tile_counts leaves counts, sort_tile_scan where the first key of each tile and
+  // digit goes, sort_scatter where one more would go.
   UintBuffer tile_digits;
   uint count;
   uint key_words;
