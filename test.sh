@@ -79,7 +79,7 @@ else
   say "no clang: the OBJ reader is not fuzzed"
 fi
 for driver in "${drivers[@]:1}"; do
-  check "device tests on $(describe_driver "$driver")" run_ctest_on "$driver" -L device
+  check "device tests on $(describe_driver "$driver")" run_ctest_on "$driver" -L device -LE widths
 done
 
 # Said before the last run, because that one's summary closes the output.

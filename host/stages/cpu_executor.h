@@ -22,13 +22,13 @@ class CpuExecutor {
 
   template <class T>
   void upload(const Slot<T>& slot, std::span<const T> values) {
-    std::memcpy(at(slot.place), values.data(), values.size_bytes());
+    if (!values.empty()) std::memcpy(at(slot.place), values.data(), values.size_bytes());
   }
 
   template <class T>
   std::vector<T> read(const Slot<T>& slot) const {
     std::vector<T> values(slot.count);
-    std::memcpy(values.data(), at(slot.place), slot.bytes());
+    if (!values.empty()) std::memcpy(values.data(), at(slot.place), slot.bytes());
     return values;
   }
 
