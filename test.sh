@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing (Debian 12), builds everything with warnings as errors and runs all checks, the
-# cheap ones first; the last thing printed is ctest's summary of the full run on the reference driver.
+# cheap ones first. The first that fails ends it, so what it said stands last; when all pass, that is ctest's summary
+# of the full run on the reference driver.
 #   ./test.sh                    everything
 #   ./test.sh CTEST_ARGUMENT...  one ctest run on the reference driver, for example ./test.sh -R sort
 # COPPICE_DRIVER=auto|private|stock|system chooses the Vulkan driver, see host/setup.sh.
@@ -12,13 +13,12 @@ fuzz_seconds=${COPPICE_FUZZ_SECONDS:-20}
 test_timeout=300 # seconds a test, where CMake sets no other
 # Long, and of a driver that is not the reference they would say little more than the rest: sizes, and times.
 reference_only='AMillion|EveryStageOfEveryTree|WideTree.PowersOfTwo|BenchChecksAndTimes|TuneKeeps'
-failed_checks=()
 
 check() {
   local name=$1
   shift
-  say "$name"
-  "$@" || failed_checks+=("$name")
+  say "$name (after $SECONDS s)"
+  "$@" || die "FAILED: $name"
 }
 
 format_is_clean() {
@@ -85,10 +85,4 @@ for driver in "${drivers[@]:1}"; do
     -L device -LE widths -E "$reference_only"
 done
 
-# Said before the last run, because that one's summary closes the output.
-for name in "${failed_checks[@]}"; do
-  say "FAILED: $name"
-done
-say "all tests on $(describe_driver "$reference")"
-run_ctest_on "$reference"
-((${#failed_checks[@]} == 0))
+check "all tests on $(describe_driver "$reference")" run_ctest_on "$reference"
