@@ -17,21 +17,6 @@ namespace {
 
 constexpr std::size_t checked_rays = 20000;
 
-// A ray through the centre of each pixel, in the order of FILM_STRIP.
-std::vector<Ray> rays_through(const Film& film) {
-  std::vector<Ray> rays;
-  for (std::uint32_t top = 0; top < film.height; top += FILM_STRIP) {
-    for (std::uint32_t x = 0; x < film.width; ++x) {
-      for (std::uint32_t y = top; y < std::min(top + FILM_STRIP, film.height); ++y) {
-        const vec3 direction = film.corner + film.right * (static_cast<float>(x) + 0.5f) +
-                               film.down * (static_cast<float>(y) + 0.5f);
-        rays.push_back({film.position, 0, direction, std::numeric_limits<float>::infinity()});
-      }
-    }
-  }
-  return rays;
-}
-
 // The first rays, against the twins. A GPU may round a division otherwise, so there a few triangles may
 // differ.
 void check_hits(RayTracing& tracing, std::span<const Ray> rays, const TraceOptions& trace, bool exact) {

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 #include <glm/vec3.hpp>
+#include <limits>
 
 namespace coppice {
 
@@ -77,6 +78,20 @@ Film make_film(const Scene& scene, std::span<const float> given, std::uint32_t w
   film.right = right * (2 * half_width / width);
   film.down = down * (2 * half_height / height);
   return film;
+}
+
+std::vector<Ray> rays_through(const Film& film) {
+  std::vector<Ray> rays;
+  for (std::uint32_t top = 0; top < film.height; top += FILM_STRIP) {
+    for (std::uint32_t x = 0; x < film.width; ++x) {
+      for (std::uint32_t y = top; y < std::min(top + FILM_STRIP, film.height); ++y) {
+        const vec3 direction = film.corner + film.right * (static_cast<float>(x) + 0.5f) +
+                               film.down * (static_cast<float>(y) + 0.5f);
+        rays.push_back({film.position, 0, direction, std::numeric_limits<float>::infinity()});
+      }
+    }
+  }
+  return rays;
 }
 
 }  // namespace coppice

@@ -26,6 +26,9 @@ void print_warnings(const Scene& scene);
 Film make_film(const Scene& scene, std::span<const float> camera, std::uint32_t width, std::uint32_t height,
                std::uint32_t samples);
 
+// A ray through the centre of each pixel, in the order of FILM_STRIP.
+std::vector<Ray> rays_through(const Film& film);
+
 // Uploads all that a build and a trace read, through any executor.
 template <class Executor>
 void upload_frame(Executor& executor, const TreeSlots& tree, const TracePlan& trace, const SceneArrays& scene,
