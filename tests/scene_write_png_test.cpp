@@ -12,6 +12,7 @@
 #include <stb/stb_image.h>
 
 #include "scene/input_error.h"
+#include "scene/write_file.h"
 #include "scene/write_png.h"
 
 namespace coppice {

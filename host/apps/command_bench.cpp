@@ -3,6 +3,7 @@
 
 #include "apps/bench.h"
 #include "scene/input_error.h"
+#include "scene/write_file.h"
 
 namespace coppice {
 
@@ -43,7 +44,7 @@ int run_bench(const Options& options) {
   if (rows.empty()) throw InputError("bench " + options.bench + ": nothing has what --only asks for");
   Json json = Json::array();
   for (const BenchRow& row : rows) json.push_back(to_json(row));
-  if (!options.csv.empty()) write_text(options.csv, bench_csv(rows, properties));
+  if (!options.csv.empty()) write_file(options.csv, bench_csv(rows, properties) + "\n");
   write_json(options.json, {{"device", properties.name}, {"driver", properties.driver}, {"rows", json}});
   return validation_status(device.device);
 }

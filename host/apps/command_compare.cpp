@@ -8,6 +8,7 @@
 #include "pipeline/build.h"
 #include "scene/input_error.h"
 #include "scene/scene_source.h"
+#include "scene/write_file.h"
 
 namespace coppice {
 
@@ -87,8 +88,8 @@ int run_compare(const Options& options) {
                " runs. X: infeasible, with the reason.";
   const std::string markdown = to_markdown(comparison, conditions);
   if (talks(options)) std::printf("%s", markdown.c_str());
-  if (!options.markdown.empty()) write_text(options.markdown, markdown);
-  if (!options.plot.empty()) write_text(options.plot, to_svg(comparison));
+  if (!options.markdown.empty()) write_file(options.markdown, markdown + "\n");
+  if (!options.plot.empty()) write_file(options.plot, to_svg(comparison) + "\n");
   write_json(options.json, to_json(comparison));
   const bool any_row = std::ranges::any_of(comparison, [](const SceneComparison& scene) {
     return std::ranges::any_of(scene.rows, [](const ComparisonRow& row) { return row.infeasible.empty(); });

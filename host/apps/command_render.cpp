@@ -7,6 +7,7 @@
 #include "apps/render_frame.h"
 #include "scene/input_error.h"
 #include "scene/scene_source.h"
+#include "scene/write_file.h"
 #include "scene/write_png.h"
 
 namespace coppice {

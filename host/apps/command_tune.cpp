@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <vector>
 
 #include "apps/bench.h"
 #include "pipeline/variant_table.h"
+#include "scene/write_file.h"
 
 namespace coppice {
 
@@ -85,7 +87,8 @@ int run_tune(const Options& options) {
   const std::filesystem::path file = device.device.kept_file("variants");
   if (file.empty())
     throw DeviceError("no folder to keep the table in: neither XDG_CACHE_HOME nor HOME is set");
-  write_variant_table(file, variant_table_text(device.variants, properties));
+  std::filesystem::create_directories(file.parent_path());
+  write_file(file, variant_table_text(device.variants, properties));
   if (talks(options)) std::printf("written to %s\n", file.c_str());
   write_json(options.json, {{"device", properties.name},
                             {"driver", properties.driver},

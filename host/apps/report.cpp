@@ -2,32 +2,13 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <iostream>
 
 #include "analysis/tree_hash.h"
 #include "scene/input_error.h"
+#include "scene/write_file.h"
 
 namespace coppice {
-
-void write_text(const std::string& path, const std::string& text) {
-  // Whole or not at all, where the target is a file and no device or pipe.
-  namespace fs = std::filesystem;
-  std::error_code error;
-  const bool replaces = !fs::exists(path, error) || fs::is_regular_file(path, error);
-  const std::string written = replaces ? path + ".partial" : path;
-  std::ofstream file(written, std::ios::trunc);
-  file << text << '\n';
-  file.close();
-  const bool done = static_cast<bool>(file);
-  if (done && replaces) fs::rename(written, path, error);
-  if (done && !error) return;
-  const std::string reason = error ? error.message() : std::strerror(errno);
-  if (replaces) fs::remove(written, error);
-  throw InputError("cannot write '" + path + "': " + reason);
-}
 
 Spread spread_of(std::vector<double> values) {
   std::ranges::sort(values);
@@ -109,7 +90,7 @@ void write_json(const std::string& path, const Json& json) {
     std::cout << json.dump(2) << std::endl;
     if (!std::cout) throw InputError("cannot write the report to stdout");
   } else {
-    write_text(path, json.dump(2));
+    write_file(path, json.dump(2) + "\n");
   }
 }
 
@@ -127,7 +108,7 @@ void write_trace_events(const std::string& path, const KernelSplit& split) {
                       {"tid", 1}});
     start_us += duration_us;
   }
-  write_text(path, Json{{"traceEvents", events}, {"displayTimeUnit", "ms"}}.dump());
+  write_file(path, Json{{"traceEvents", events}, {"displayTimeUnit", "ms"}}.dump() + "\n");
 }
 
 }  // namespace coppice

@@ -38,9 +38,6 @@ struct BuildReport {
 Json to_json(const BuildReport& report);
 void print_build(const BuildReport& report);
 
-// Throws InputError naming the file.
-void write_text(const std::string& path, const std::string& text);
-
 // Writes to the file, or to stdout for "-"; nothing for "". Throws InputError naming the file.
 void write_json(const std::string& path, const Json& json);
 

@@ -4,12 +4,11 @@
 
 #include "interface/sort.h"
 #include "pipeline/build.h"
+#include "stages/divide_up.h"
 
 namespace coppice {
 
 namespace {
-
-std::uint32_t divide_up(std::uint32_t a, std::uint32_t b) { return a / b + (a % b != 0); }
 
 void add_ploc_slots(Layout& layout, BuildPlan& plan) {
   const std::uint32_t n = plan.triangle_count;
@@ -50,7 +49,7 @@ SortPlan plan_passes(std::uint32_t key_count, const BuildOptions& options) {
     while (divide_up(key_count, sort.tile_keys) > most_scanned_tiles) sort.tile_keys *= 2;
   }
   sort.tile_count = divide_up(key_count, sort.tile_keys);
-  sort.passes_per_word = divide_up(32, sort.digit_bits);
+  sort.passes_per_word = divide_up(32u, sort.digit_bits);
   sort.passes = options.morton_bits / 30 * sort.passes_per_word;
   return sort;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "stages/divide_up.h"
 #include "stages/gpu_executor.h"
 #include "stages/stages.h"
 
@@ -14,7 +15,7 @@ constexpr std::uint64_t least_bytes = 4 << 10, greatest_bytes = 256 << 20;
 constexpr std::size_t runs = 5;
 constexpr double limit_seconds = 60;
 
-std::uint64_t quads_of(std::uint64_t bytes) { return (bytes + quad_bytes - 1) / quad_bytes; }
+std::uint64_t quads_of(std::uint64_t bytes) { return divide_up(bytes, quad_bytes); }
 
 }  // namespace
 
@@ -26,7 +27,7 @@ CopyPlan plan_copy(Layout& layout, std::uint64_t most_bytes) {
 void append_copy(Chain& chain, const CopyPlan& plan, std::uint64_t bytes) {
   const auto quads = static_cast<std::uint32_t>(std::min(quads_of(bytes), plan.source.count));
   chain.run(stages::copy_words, {chain.at(plan.source), chain.at(plan.target), quads, 0},
-            {(quads + COPY_TILE - 1) / COPY_TILE, 1, 1});
+            {divide_up(quads, COPY_TILE), 1, 1});
 }
 
 double CopyLimit::ms(std::uint64_t bytes) const {

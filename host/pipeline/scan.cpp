@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "stages/divide_up.h"
 #include "stages/stages.h"
 
 namespace coppice {
@@ -12,8 +13,6 @@ namespace {
 constexpr std::uint64_t first_tile_word =
     4;  // of the status, behind the ticket: tiles' sums are scanned as quads
 static_assert(SCAN_MAX_TILES <= SCAN_TILE * 4 && SCAN_MAX_TILES <= 65535);
-
-std::uint64_t divide_up(std::uint64_t a, std::uint64_t b) { return (a + b - 1) / b; }
 
 }  // namespace
 

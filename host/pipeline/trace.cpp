@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "stages/divide_up.h"
 #include "stages/stages.h"
 
 namespace coppice {
@@ -14,7 +15,7 @@ namespace {
 
 constexpr std::uint32_t max_band_rays = 1u << 20;
 
-uvec3 groups_of(std::uint32_t count, std::uint32_t group) { return {(count + group - 1) / group, 1, 1}; }
+uvec3 groups_of(std::uint32_t count, std::uint32_t group) { return {divide_up(count, group), 1, 1}; }
 
 }  // namespace
 

@@ -1,7 +1,5 @@
 #include "pipeline/variant_table.h"
 
-#include <unistd.h>
-
 #include <cstdio>
 #include <fstream>
 #include <sstream>
@@ -62,19 +60,6 @@ Variants variants_of(const Device& device) {
     std::fprintf(stderr, "note: %s %s; ignored (coppice tune writes it anew)\n", path.c_str(), error.c_str());
   }
   return variants;
-}
-
-void write_variant_table(const std::filesystem::path& file, const std::string& text) {
-  const std::filesystem::path partial = file.string() + "." + std::to_string(getpid());
-  std::error_code error;
-  std::filesystem::create_directories(file.parent_path(), error);
-  std::ofstream stream(partial, std::ios::binary | std::ios::trunc);
-  stream << text;
-  stream.close();
-  if (stream) std::filesystem::rename(partial, file, error);
-  if (stream && !error) return;
-  std::filesystem::remove(partial, error);
-  throw DeviceError("cannot write " + file.string());
 }
 
 }  // namespace coppice

@@ -20,7 +20,4 @@ std::string parse_variant_table(const std::string& text, const DeviceProperties&
 // use.
 Variants variants_of(const Device& device);
 
-// Writes the file, whole or not at all. Throws DeviceError naming it.
-void write_variant_table(const std::filesystem::path& file, const std::string& text);
-
 }  // namespace coppice

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "stages/divide_up.h"
 #include "stages/stages.h"
 
 namespace coppice {
 
 namespace {
-
-std::uint32_t divide_up(std::uint32_t a, std::uint32_t b) { return a / b + (a % b != 0); }
 
 // Levels below the first: above a node of level k there are k nodes of eight children, one of them on its
 // way.

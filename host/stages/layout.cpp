@@ -1,10 +1,12 @@
 #include "stages/layout.h"
 
+#include "stages/divide_up.h"
+
 namespace coppice {
 
 Place Layout::reserve(SlotListing slot) {
   constexpr std::uint64_t alignment = 256;
-  const std::uint64_t bytes = (slot.bytes() + alignment - 1) / alignment * alignment + guard_bytes;
+  const std::uint64_t bytes = divide_up(slot.bytes(), alignment) * alignment + guard_bytes;
   if (bytes > max_block_bytes_) {
     throw LayoutError("'" + slot.name + "' needs " + std::to_string(bytes) +
                       " bytes in one piece, the device gives " + std::to_string(max_block_bytes_));
