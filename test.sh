@@ -5,7 +5,7 @@
 #   ./test.sh                    everything
 #   ./test.sh CTEST_ARGUMENT...  one ctest run on the reference driver, for example ./test.sh -R sort
 # COPPICE_DRIVER=auto|private|stock|system chooses the Vulkan driver, see host/setup.sh.
-# COPPICE_FUZZ_SECONDS is how long the OBJ reader is fuzzed, 20 unless given.
+# COPPICE_FUZZ_SECONDS is how long the OBJ reader is fuzzed, 20 unless given; COPPICE_FUZZ_SEED another seed.
 set -euo pipefail
 source "$(dirname "$(realpath "${BASH_SOURCE[0]}")")/host/setup.sh"
 
@@ -49,12 +49,14 @@ host_tests_sanitized() {
 }
 
 # Coverage-guided, from the corpus on. What it finds new stays in the build folder and is where the next run
-# begins.
+# begins. By the same seed every time, so that what failed fails again; 25 seconds are a hang, 5 may be a machine
+# that paused.
 fuzz_obj_reader() {
   local folder=$build_dir/fuzz
   mkdir -p "$folder/found"
-  "$folder/obj_fuzzer" -max_total_time="$fuzz_seconds" -timeout=5 -rss_limit_mb=2048 -max_len=4096 \
-    -dict="$root/tests/fuzz/obj.dict" -artifact_prefix="$folder/" "$folder/found" "$root/tests/fuzz/corpus" \
+  "$folder/obj_fuzzer" -max_total_time="$fuzz_seconds" -seed="${COPPICE_FUZZ_SEED:-1}" -timeout=25 \
+    -rss_limit_mb=2048 -max_len=4096 -dict="$root/tests/fuzz/obj.dict" \
+    -artifact_prefix="$folder/" "$folder/found" "$root/tests/fuzz/corpus" \
     >"$folder/fuzz.log" 2>&1 </dev/null && return
   tail -n 60 "$folder/fuzz.log" >&2
   return 1
