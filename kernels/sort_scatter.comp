@@ -1,6 +1,7 @@
-// In:  pairs, sorted by the digits below this one; where the first key of each tile and digit goes. Out: pairs sorted
-// by this digit too; the sort is stable. Merrill and Grimshaw 2011, "High Performance and Scalable Radix Sorting",
-// section 4; ranks by subgroup match, as in Adinets and Merrill 2022, "Onesweep", section 4.4.
+// In:  pairs, sorted by the digits below this one; where the first key of each tile and digit goes, which a tile without
+// others finds itself. Out: pairs sorted by this digit too; the sort is stable.
+// Merrill and Grimshaw 2011, "High Performance and Scalable Radix Sorting", section 4; ranks by subgroup match, as in
+// Adinets and Merrill 2022, "Onesweep", section 4.4.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/sort.h"
@@ -8,6 +9,7 @@
 layout(local_size_x_id = DEVICE_SUBGROUP_SIZE_ID) in;
 layout(push_constant, scalar) uniform Push { SortScatterArgs args; };
 layout(constant_id = 2) const bool HAS_VALUES = true;  // false: of keys alone
+layout(constant_id = 3) const bool ONE_TILE = false;   // args.count <= args.tile_keys
 
 #include "lib/subgroup_match.glsl"
 #include "lib/sort_counters.glsl"
@@ -35,6 +37,17 @@ void load_counters() {
   sync();
 }
 
+// Of one tile: exclusive sums of its counts.
+void scan_counters() {
+  uint before = 0u;
+  [[dont_unroll]] for (uint first = 0u; first < DIGITS; first += SUBGROUP_SIZE) {
+    uint count = counter(first + lane());
+    set_counter(first + lane(), before + subgroupExclusiveAdd(count));
+    before += subgroupAdd(count);
+  }
+  sync();
+}
+
 void scatter(Pair pair, bool exists) {
   uint digit = exists ? digit_of(KEY_WORDS == 2u && args.digit_word == 1u ? pair.key.y : pair.key.x) : DIGITS;
   Match same = match_digit(digit, DIGIT_BITS);
@@ -46,7 +59,12 @@ void scatter(Pair pair, bool exists) {
 }
 
 void main() {
-  load_counters();
+  if (ONE_TILE) {
+    count_tile();
+    scan_counters();
+  } else {
+    load_counters();
+  }
   uvec2 places = places_of_tile();
   [[dont_unroll]] for (uint first = places.x; first < places.y; first += 2u * SUBGROUP_SIZE) {
     uvec2 at = first + lane() + uvec2(0u, SUBGROUP_SIZE);

@@ -162,7 +162,10 @@ struct Fault {
   StageDeclaration declaration;
   DeviceBuilder builder = DeviceBuilder::ploc;
   bool lookback = true;
+  std::uint32_t triangles = 3000;
 };
+
+constexpr std::uint32_t two_sort_tiles = SORT_SCAN_TILE + 100;  // one alone counts and scans in sort_scatter
 
 void wrong_shift(const void* args) {
   auto sort = args_of<SortPassArgs>(args);
@@ -191,11 +194,11 @@ std::vector<Fault> faults() {
       {"sort_tile_counts", "sort_digits",
        faulty<&stages::sort_tile_counts,
               [](const void* args) { --args_of<SortScatterArgs>(args).tile_digits[0]; }>(),
-       DeviceBuilder::ploc, false},
+       DeviceBuilder::ploc, false, two_sort_tiles},
       {"sort_tile_scan", "sort_digits",
        faulty<&stages::sort_tile_scan,
               [](const void* args) { ++args_of<SortTileScanArgs>(args).tile_digits[2047]; }>(),
-       DeviceBuilder::ploc, false},
+       DeviceBuilder::ploc, false, two_sort_tiles},
       {"sort_scatter", "keys_a",
        faulty<&stages::sort_scatter,
               [](const void* args) {
@@ -228,8 +231,8 @@ std::vector<Fault> faults() {
 }
 
 TEST_F(Lockstep, NamesAPlantedFaultByStageAndSlot) {
-  const std::vector<Triangle> triangles = random_triangles(3000, 1);
   for (const Fault& fault : faults()) {
+    const std::vector<Triangle> triangles = random_triangles(fault.triangles, 1);
     BuildOptions options;
     options.builder = fault.builder;
     options.lookback = fault.lookback;

@@ -81,10 +81,13 @@ void append_scanned_sort(Chain& chain, const BuildPlan& plan) {
                                pass % sort.passes_per_word * bits,
                                bits,
                                sort.tile_keys};
-    chain.run(stages::sort_tile_counts, args, {sort.tile_count, 1, 1}, {bits, key_words});
-    chain.run(stages::sort_tile_scan, {args.tile_digits, sort.tile_count, bits},
-              {std::min(sort.tile_count, 1u), 1, 1}, {bits});
-    chain.run(stages::sort_scatter, args, {sort.tile_count, 1, 1}, {bits, key_words, has_values(plan)});
+    const bool one_tile = sort.tile_count <= 1;  // it counts and scans for itself
+    if (!one_tile) {
+      chain.run(stages::sort_tile_counts, args, {sort.tile_count, 1, 1}, {bits, key_words});
+      chain.run(stages::sort_tile_scan, {args.tile_digits, sort.tile_count, bits}, {1, 1, 1}, {bits});
+    }
+    chain.run(stages::sort_scatter, args, {sort.tile_count, 1, 1},
+              {bits, key_words, has_values(plan), one_tile});
   }
 }
 

@@ -47,8 +47,10 @@ std::optional<Bytes> sort_bytes(const Step& step) {
     return Bytes{a->count} * 4 + tile_digits_bytes(*a);
   if (const auto* a = args_of(step, stages::sort_tile_scan))
     return Bytes{a->tile_count} * 2 * sizeof(uint) << a->digit_bits;
-  if (const auto* a = args_of(step, stages::sort_scatter))
-    return pairs_moved(a->count, a->key_words, a->values_in.value != 0) + 2 * tile_digits_bytes(*a);
+  if (const auto* a = args_of(step, stages::sort_scatter)) {
+    const Bytes times = a->count <= a->tile_keys ? 1 : 2;  // one tile reads no counts
+    return pairs_moved(a->count, a->key_words, a->values_in.value != 0) + times * tile_digits_bytes(*a);
+  }
   return std::nullopt;
 }
 

@@ -1,13 +1,34 @@
+#include <algorithm>
+
 #include "interface/sort.h"
 
 namespace coppice::twins {
 
-void sort_scatter(const SortScatterArgs& args) {
+namespace {
+
+uint digit_of(const SortScatterArgs& args, uint i) {
+  const uint word = args.keys_in[std::size_t{i} * args.key_words + args.digit_word];
+  return word >> args.digit_shift & ((1u << args.digit_bits) - 1);
+}
+
+// Where the first key of each digit goes, if there is only one tile.
+void place_digits(const SortScatterArgs& args) {
   const uint digits = 1u << args.digit_bits;
+  std::fill_n(&args.tile_digits[0], digits, 0u);
+  for (uint i = 0; i < args.count; ++i) {
+    if (const uint digit = digit_of(args, i); digit + 1 < digits) ++args.tile_digits[digit + 1];
+  }
+  for (uint digit = 1; digit < digits; ++digit) args.tile_digits[digit] += args.tile_digits[digit - 1];
+}
+
+}  // namespace
+
+void sort_scatter(const SortScatterArgs& args) {
+  if (args.count <= args.tile_keys) place_digits(args);
   for (uint i = 0; i < args.count; ++i) {
     const std::size_t source = std::size_t{i} * args.key_words;
-    const uint digit = args.keys_in[source + args.digit_word] >> args.digit_shift & (digits - 1);
-    const uint place = args.tile_digits[std::size_t{i / args.tile_keys} * digits + digit]++;
+    const std::size_t tile = i / args.tile_keys;
+    const uint place = args.tile_digits[(tile << args.digit_bits) + digit_of(args, i)]++;
     for (uint word = 0; word < args.key_words; ++word) {
       args.keys_out[std::size_t{place} * args.key_words + word] = args.keys_in[source + word];
     }

@@ -28,7 +28,7 @@ const uint SORT_MATCH_GROUP = 64;  // at least 4 to a subgroup, so at most SORT_
 const uint SORT_MATCH_TILE = 4096;
 
 // Of counting, scanning and scattering: the digits have 8 or 11 bits, and a tile, which one subgroup takes,
-// at least SORT_SCAN_TILE keys.
+// at least SORT_SCAN_TILE keys. Where there is but one tile, sort_scatter counts and scans for itself.
 const uint SORT_NARROW_BITS = 8;
 const uint SORT_WIDE_BITS = 11;
 const uint SORT_SCAN_TILE = 16384;

@@ -1,5 +1,7 @@
 // A tile of the radix sort that one subgroup takes, as many keys at once as it has invocations, with a counter a digit.
 // On CPU devices the counters stay in device memory, where gathers and scatters are single instructions.
+//
+// The including kernel includes lib/subgroup_match.glsl before.
 
 layout(constant_id = DEVICE_LANES_IN_STEP_ID) const bool LANES_IN_STEP = false;
 layout(constant_id = 0) const uint DIGIT_BITS = SORT_NARROW_BITS;  // args.digit_bits
@@ -42,3 +44,22 @@ uvec2 places_of_tile() {
 uint digit_of(uint key_word) { return (key_word >> args.digit_shift) & (DIGITS - 1u); }
 
 uint key_word(uint place, uint word) { return args.keys_in.at[place * KEY_WORDS + word]; }
+
+void count_digit(uint digit) {
+  Match same = match_digit(digit, DIGIT_BITS);
+  if (digit < DIGITS && same.is_last) set_counter(digit, counter(digit) + same.before + 1u);
+  sync();
+}
+
+void count_tile() {
+  [[dont_unroll]] for (uint digit = lane(); digit < DIGITS; digit += SUBGROUP_SIZE) set_counter(digit, 0u);
+  sync();
+  uvec2 places = places_of_tile();
+  [[dont_unroll]] for (uint first = places.x; first < places.y; first += 2u * SUBGROUP_SIZE) {
+    uvec2 at = first + lane() + uvec2(0u, SUBGROUP_SIZE);
+    uvec2 read = min(at, uvec2(places.y - 1u));
+    uint even = key_word(read.x, args.digit_word), odd = key_word(read.y, args.digit_word);
+    count_digit(at.x < places.y ? digit_of(even) : DIGITS);
+    count_digit(at.y < places.y ? digit_of(odd) : DIGITS);
+  }
+}
