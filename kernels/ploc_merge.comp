@@ -13,7 +13,9 @@ layout(local_size_x_id = DEVICE_SUBGROUP_SIZE_ID) in;
 layout(constant_id = 3) const uint RADIUS = 8u;
 layout(push_constant, scalar) uniform Push { PlocMergeArgs args; };
 
+#include "lib/node_words.glsl"
 #include "lib/ploc_tile.glsl"
+#include "lib/ploc_place.glsl"
 #define LOOKBACK_GROUP gl_WorkGroupSize.x
 #define LOOKBACK_SUMS PLOC_MERGE_SUMS
 void sum_tile(uint tile);
@@ -21,53 +23,18 @@ void sum_tile(uint tile);
 
 shared uint ticket;
 
+Node load_cluster(uint i) { return load_node(args.clusters_in, i); }
+void store_cluster(uint place, Node cluster) { store_node(args.clusters_out, place, cluster); }
+void keep_partner(uint i, uint partner) { args.partners.at[i] = partner; }
+uint partner_of(uint i) { return args.partners.at[i]; }
+void sync_clusters() {}
+
 void publish_sums(uvec2 sums) {
   if (gl_LocalInvocationIndex < PLOC_MERGE_SUMS) tile_sums[gl_LocalInvocationIndex] = sums[gl_LocalInvocationIndex];
   barrier();
 }
 
 void sum_tile(uint tile) { publish_sums(find_partners(tile, args.rounds.at[args.round], false)); }
-
-// subgroupInclusiveAdd goes lane by lane on CPU devices.
-uint inclusive_add(uint value) {
-  [[unroll]] for (uint distance = 1u; distance < LANES; distance <<= 1) {
-    uint before = subgroupShuffle(value, (lane() - distance) % LANES);
-    value += lane() >= distance ? before : 0u;
-  }
-  return value;
-}
-
-void place_cluster(uint i, uint partner_index, uint place, uint first_child) {
-  Node cluster = load_node(args.clusters_in, i);
-  if (partner_index != i) {
-    Node partner = load_node(args.clusters_in, partner_index);
-    store_node(args.nodes, first_child, cluster);
-    store_node(args.nodes, first_child + 1u, partner);
-    cluster = parent_of(cluster, partner, first_child);
-  }
-  store_node(args.clusters_out, place, cluster);
-}
-
-// Returns the sums up to and with this tile.
-uvec2 place_tile(uint tile, PlocRound round, uvec2 before) {
-  uint active_count = args.state.at[0].active_count;
-  uint first = tile * PLOC_MERGE_TILE;
-  uint count = min(round.cluster_count - first, PLOC_MERGE_TILE);
-  [[dont_unroll]] for (uint at = 0u; at < count; at += LANES) {
-    uint i = first + at + lane();
-    bool present = at + lane() < count;
-    uint partner = present ? args.partners.at[i] : i;
-    bool retires = partner == PLOC_RETIRES;
-    uint word = retires ? 1u : partner != i ? 0x10000u : 0u;
-    uint sums = inclusive_add(word);
-    uvec2 rank = before + uvec2((sums - word) & 0xffffu, (sums - word) >> 16);
-    if (present && !retires)
-      place_cluster(i, partner, i - rank.x, first_child_of(active_count, round.merged_before + rank.y));
-    uint block_sums = subgroupBroadcast(sums, LANES - 1u);
-    before += uvec2(block_sums & 0xffffu, block_sums >> 16);
-  }
-  return before;
-}
 
 // Sums over all tiles before this one.
 struct Prefix {

@@ -10,7 +10,11 @@ layout(local_size_x_id = DEVICE_SUBGROUP_SIZE_ID) in;
 layout(constant_id = 3) const uint RADIUS = 8u;
 layout(push_constant, scalar) uniform Push { PlocMergeArgs args; };
 
+#include "lib/node_words.glsl"
 #include "lib/ploc_tile.glsl"
+
+Node load_cluster(uint i) { return load_node(args.clusters_in, i); }
+void keep_partner(uint i, uint partner) { args.partners.at[i] = partner; }
 
 void main() {
   uvec2 total = find_partners(gl_WorkGroupID.x, args.rounds.at[args.round], true);

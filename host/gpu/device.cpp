@@ -96,7 +96,7 @@ std::string why_unsuitable(const vk::raii::PhysicalDevice& physical) {
   const auto& floats = properties.get<vk::PhysicalDeviceVulkan12Properties>();
   if (!floats.shaderRoundingModeRTEFloat32) return "no rounding to nearest even";
   if (!floats.shaderSignedZeroInfNanPreserveFloat32) return "no infinities and NaN";
-  if (core.limits.maxComputeWorkGroupInvocations < 512) return "no workgroups of 512 invocations";
+  if (core.limits.maxComputeWorkGroupInvocations < 256) return "no workgroups of 256 invocations";
   if (core.limits.maxComputeSharedMemorySize < 32768) return "less than 32 KiB of shared memory";
   auto features = physical.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features,
                                         vk::PhysicalDeviceVulkan13Features>();

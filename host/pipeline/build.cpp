@@ -13,6 +13,7 @@ namespace {
 // max_triangles is what one dispatch of the smallest tile reaches.
 static_assert(std::min({PRIMITIVE_BOUNDS_TILE, MORTON_TILE, SORT_HISTOGRAM_TILE, SORT_RUNS_TILE,
                         SORT_MATCH_TILE, SORT_SCAN_TILE, PLOC_LEAVES_TILE}) >= PLOC_MERGE_TILE);
+static_assert(PLOC_FINISH_CLUSTERS <= PLOC_MERGE_TILE, "the finish takes its clusters for one tile");
 
 uvec3 tiles(std::uint32_t count, std::uint32_t tile, std::uint32_t rows = 1) {
   return {count / tile + (count % tile != 0), rows, 1};
@@ -136,7 +137,7 @@ void append_ploc(Chain& chain, const BuildPlan& plan) {
   chain.run(stages::ploc_finish,
             {chain.at(plan.clusters[0]), chain.at(plan.clusters[1]), chain.at(plan.nodes),
              chain.at(plan.state), chain.at(plan.rounds), plan.options.radius, plan.rounds_bound},
-            {1, 1, 1});
+            {1, 1, 1}, {plan.options.radius});
 }
 
 // One dispatch builds the whole tree.

@@ -23,8 +23,7 @@ const uint PLOC_MERGE_SUMS = 2;  // scanned together: clusters that retire, pair
 const uint PLOC_RETIRES = 0xffffffff;
 const uint PLOC_TILE_SCAN_GROUP = 64;
 
-const uint PLOC_FINISH_CLUSTERS =
-    512;  // from here on one workgroup does all remaining rounds, an invocation a cluster
+const uint PLOC_FINISH_CLUSTERS = 896;  // from here on one subgroup does all remaining rounds
 
 // One round, written by the last tile of the round before it. Zero for a round that is not needed.
 struct PlocRound {

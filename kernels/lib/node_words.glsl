@@ -8,18 +8,21 @@ layout(buffer_reference, scalar, buffer_reference_align = 8) buffer BoxWordsBuff
   u64vec3 at[];
 };
 
-Node load_node(NodeBuffer nodes, uint i) {
-  u64vec4 words = NodeWordsBuffer(nodes).at[i];
+Node node_of(u64vec4 words) {
   uvec2 a = unpackUint2x32(words.x), b = unpackUint2x32(words.y);
   uvec2 c = unpackUint2x32(words.z), d = unpackUint2x32(words.w);
   return Node(uintBitsToFloat(uvec3(a, b.x)), b.y, uintBitsToFloat(uvec3(c, d.x)), d.y);
 }
 
-void store_node(NodeBuffer nodes, uint i, Node node) {
+u64vec4 words_of(Node node) {
   uvec3 low = floatBitsToUint(node.box_min), high = floatBitsToUint(node.box_max);
-  NodeWordsBuffer(nodes).at[i] = u64vec4(packUint2x32(low.xy), packUint2x32(uvec2(low.z, node.child)),
-                                        packUint2x32(high.xy), packUint2x32(uvec2(high.z, node.height)));
+  return u64vec4(packUint2x32(low.xy), packUint2x32(uvec2(low.z, node.child)), packUint2x32(high.xy),
+                 packUint2x32(uvec2(high.z, node.height)));
 }
+
+Node load_node(NodeBuffer nodes, uint i) { return node_of(NodeWordsBuffer(nodes).at[i]); }
+
+void store_node(NodeBuffer nodes, uint i, Node node) { NodeWordsBuffer(nodes).at[i] = words_of(node); }
 
 Aabb load_box(AabbBuffer boxes, uint i) {
   u64vec3 words = BoxWordsBuffer(boxes).at[i];

@@ -4,9 +4,11 @@
 // merge with are in registers; a box meets the others by shuffles, each pair once, so that its distance serves both. A
 // cluster's left side is complete when its block comes up.
 //
-// The including kernel defines RADIUS, a specialization constant, and `args` with clusters_in and partners.
+// The including kernel defines RADIUS, a specialization constant, `args` with the state, and where clusters and
+// partners are kept:
+Node load_cluster(uint i);
+void keep_partner(uint i, uint partner);
 #include "lib/ploc_box.glsl"
-#include "lib/node_words.glsl"
 
 const uint LANES = gl_WorkGroupSize.x;
 const uint BLOCKS_AHEAD = (RADIUS + LANES - 1u) / LANES;  // that a cluster may merge with
@@ -22,7 +24,7 @@ struct Block {
 Block load_block(uint i, uint cluster_count, Normalisation normalisation) {
   Block block = Block(Box(vec3(-FAR), vec3(FAR)), Nearest(NO_AREA, 0u));
   if (i < cluster_count) {
-    Node cluster = load_node(args.clusters_in, i);
+    Node cluster = load_cluster(i);
     block.box = Box(normalised(cluster.box_min, normalisation), normalised(cluster.box_max, normalisation));
   }
   return block;
@@ -62,7 +64,7 @@ int choice_of(uint to, Choices choices) {
 // and, 16 bits higher, pairs that merge.
 uint count_fate(uint i, int choice, bool mutual, bool keep) {
   bool retires = mutual && choice < 0, merges = mutual && choice > 0;
-  if (keep) args.partners.at[i] = retires ? PLOC_RETIRES : merges ? i + uint(choice) : i;
+  if (keep) keep_partner(i, retires ? PLOC_RETIRES : merges ? i + uint(choice) : i);
   return retires ? 1u : merges ? 0x10000u : 0u;
 }
 
@@ -70,15 +72,16 @@ uint count_fate(uint i, int choice, bool mutual, bool keep) {
 uint search_tile(uint first, uint last, uint cluster_count, bool keep) {
   Normalisation normalisation = scene_normalisation(args.state.at[0]);
   const uint halo = BLOCKS_AHEAD * LANES;
+  uint lead = first == 0u ? 0u : 2u * halo;  // a choice depends on `halo` clusters before it, a pair on two choices
   uint sums = 0u;
-  uint i = first - 2u * halo + lane();  // below zero it wraps around, to absent clusters
+  uint i = first - lead + lane();
   Choices choices;
   Block blocks[BLOCKS_AHEAD + 2u];      // the last one is on its way
   [[unroll]] for (uint k = 0u; k <= BLOCKS_AHEAD; ++k) {
     blocks[k] = load_block(i + k * LANES, cluster_count, normalisation);
     choices.blocks[k] = choices.blocks[k + BLOCKS_AHEAD] = 0;
   }
-  uint block_count = (last - first + LANES - 1u) / LANES + 3u * BLOCKS_AHEAD;
+  uint block_count = (last - first + lead + LANES - 1u) / LANES + BLOCKS_AHEAD;
   [[dont_unroll]] for (uint block = 0u; block < block_count; ++block) {
     blocks[BLOCKS_AHEAD + 1u] = load_block(i + halo + LANES, cluster_count, normalisation);
     Nearest right = Nearest(NO_AREA, 0u), left[BLOCKS_AHEAD + 1u];
@@ -104,7 +107,7 @@ uint search_tile(uint first, uint last, uint cluster_count, bool keep) {
     int choice = choices.blocks[BLOCKS_AHEAD];
     int answer = choice_of(halo + lane() + uint(choice), choices);
     bool mutual = choice != 0 && answer == -choice;
-    if (block >= 3u * BLOCKS_AHEAD && i - halo < last) sums += count_fate(i - halo, choice, mutual, keep);
+    if (block * LANES >= lead + halo && i - halo < last) sums += count_fate(i - halo, choice, mutual, keep);
     [[unroll]] for (uint k = 0u; k <= BLOCKS_AHEAD; ++k) blocks[k] = blocks[k + 1u];
     i += LANES;
   }
