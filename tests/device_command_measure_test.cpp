@@ -69,7 +69,7 @@ TEST_F(Command, BenchChecksAndTimes) {
                {"build --most 12000", "gpu-lbvh", 3 * 2, 12000, "hploc_build_ms"},
                {"build --most 10000 --builder gpu-ploc,gpu-hploc", "gpu-hploc", 2, 10000,
                 "ploc_merge_percent_of_copy"},
-               {"trace terrain:500 --size 32x24 --builder gpu-lbvh", "trace_diffuse", 4, 0, "frame_ms"}};
+               {"trace terrain:500 --size 32x24 --builder gpu-lbvh", "trace_diffuse", 6, 0, "frame_ms"}};
   for (const auto& c : cases) {
     const Outcome outcome =
         run(std::string("bench ") + c.arguments + " --runs 2 --validate --csv rows.csv --json -");

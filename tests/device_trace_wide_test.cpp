@@ -1,4 +1,5 @@
-// Packets through the wide tree find, bit for bit, what single rays find in the binary tree it was made from.
+// Packets and single rays through the wide tree find, bit for bit, what rays find in the binary tree it was
+// made from.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,11 +19,13 @@
 namespace coppice {
 namespace {
 
-class TraceWide : public DeviceTest {
+// The parameter: in packets.
+class TraceWide : public DeviceTest, public testing::WithParamInterface<bool> {
  protected:
   static TraceOptions options_for(bool wide) {
     TraceOptions options = test_trace_options(1, 1);
     options.wide = wide;
+    options.packets = GetParam();
     return options;
   }
 
@@ -56,7 +59,7 @@ class TraceWide : public DeviceTest {
   }
 };
 
-TEST_F(TraceWide, HardRaysAtHardCases) {
+TEST_P(TraceWide, HardRaysAtHardCases) {
   std::uint64_t hit_count = 0;
   for (const std::string_view name : hard_case_names()) {
     Scene scene = find_hard_case(std::string(name))->make(500, 1);
@@ -68,7 +71,7 @@ TEST_F(TraceWide, HardRaysAtHardCases) {
   EXPECT_GT(hit_count, 10000u);
 }
 
-TEST_F(TraceWide, FewRaysAndFewTriangles) {
+TEST_P(TraceWide, FewRaysAndFewTriangles) {
   for (std::uint32_t count = 0; count <= 20; ++count) {
     const std::vector<Triangle> triangles = random_triangles(count, count, 0.5f);
     const std::vector<Ray> rays = hard_rays(RayKind::VERTICES, triangles, {}, 130, count);
@@ -79,7 +82,7 @@ TEST_F(TraceWide, FewRaysAndFewTriangles) {
 }
 
 // Rays that have a hit already, some of them closer than what the tree holds.
-TEST_F(TraceWide, EarlierHitsStay) {
+TEST_P(TraceWide, EarlierHitsStay) {
   const std::vector<Triangle> triangles = random_triangles(5000, 3, 0.1f);
   std::vector<Ray> rays = hard_rays(RayKind::RANDOM, triangles, {}, 1000, 4);
   for (std::size_t i = 0; i < rays.size(); ++i) rays[i].t_max = static_cast<float>(i % 10) * 0.1f;
@@ -88,11 +91,12 @@ TEST_F(TraceWide, EarlierHitsStay) {
 
 // Camera rays, which fill packets as they are meant to be filled: all buffers, the count of visited nodes
 // with them.
-TEST_F(TraceWide, APictureInLockstep) {
+TEST_P(TraceWide, APictureInLockstep) {
   for (const uvec2 size : {uvec2(1, 1), uvec2(19, 13), uvec2(64, 48), uvec2(200, 7)}) {
     const std::vector<Triangle> triangles = random_triangles(3000, 5, 0.1f);
     TraceOptions options = test_trace_options(size.x, size.y);
     options.wide = true;
+    options.packets = GetParam();
     options.samples = 2;
     Layout layout(test_device().properties().max_block_bytes);
     BuildPlan build = plan_build(layout, static_cast<std::uint32_t>(triangles.size()), {});
@@ -121,7 +125,7 @@ TEST_F(TraceWide, APictureInLockstep) {
   }
 }
 
-TEST_F(TraceWide, TooFewTurnsAreReportedByName) {
+TEST_P(TraceWide, TooFewTurnsAreReportedByName) {
   const std::vector<Triangle> triangles = random_triangles(5000, 3, 0.1f);
   const std::vector<Ray> rays = hard_rays(RayKind::VERTICES, triangles, {}, 100, 4);
   const Bvh bvh = build_ploc(triangles, {});
@@ -132,7 +136,7 @@ TEST_F(TraceWide, TooFewTurnsAreReportedByName) {
   EXPECT_NE(describe_error_word(traced.error_word).find("trace_wide"), std::string::npos);
 }
 
-TEST_F(TraceWide, IsRefusedWithTestsThatDependOnTheOrder) {
+TEST_P(TraceWide, IsRefusedWithTestsThatDependOnTheOrder) {
   Layout layout;
   TreeSlots tree = plan_tree(layout, 1, 1);
   plan_wide(layout, tree);
@@ -143,6 +147,10 @@ TEST_F(TraceWide, IsRefusedWithTestsThatDependOnTheOrder) {
   Chain chain = executor.chain();
   EXPECT_THROW(append_trace(chain, tree, trace), std::invalid_argument);
 }
+
+INSTANTIATE_TEST_SUITE_P(Rays, TraceWide, testing::Bool(), [](const auto& info) {
+  return std::string(info.param ? "InPackets" : "ByThemselves");
+});
 
 }  // namespace
 }  // namespace coppice

@@ -48,12 +48,15 @@ struct TraceBench {
   const Scene& scene;
   RayTracing& tracing;
 
-  void measure(const std::string& name, std::span<const Ray> rays, bool wide, const AddRow& add) const {
-    const std::string tree = wide ? "wide" : "binary";
+  // `tree` as --tree has it.
+  void measure(const std::string& name, std::span<const Ray> rays, const std::string& tree,
+               const AddRow& add) const {
     const std::string input = scene.name + " " + options.builder + " " + tree;
     if (rays.empty() || !is_wanted(options, name, input)) return;
-    TraceOptions trace = device.trace_options(options);
-    trace.wide = wide;
+    Options frame = options;
+    frame.tree = tree;
+    TraceOptions trace = device.trace_options(frame);
+    trace.wide = tree != "binary";
     check_hits(tracing, rays, trace, device.device.properties().type == DeviceType::cpu);
     const auto run = [&] {
       const TracedRays traced = tracing.on_device(rays, trace);
@@ -61,11 +64,7 @@ struct TraceBench {
       return traced.ms;
     };
     BenchRow row = bench_row(name, input, rays.size(), measure_steady(steady_options(options, run()), run));
-    if (name == "trace_primary") {
-      Options frame = options;
-      frame.tree = tree;
-      add_frame(device, frame, scene, row);
-    }
+    if (name == "trace_primary") add_frame(device, frame, scene, row);
     add(row);
   }
 };
@@ -84,10 +83,10 @@ void bench_trees(CheckedDevice& device, const Options& options, const Scene& sce
   std::erase_if(bounced,
                 [](const Ray& ray) { return ray.direction == vec3(0); });  // of rays that hit nothing
   const TraceBench bench{device, options, scene, tracing};
-  for (const bool wide : {false, true}) {
-    if (wide && !has_wide) continue;
-    bench.measure("trace_primary", primary, wide, add);
-    bench.measure("trace_diffuse", bounced, wide, add);
+  for (const char* tree : {"binary", "wide-packets", "wide-single"}) {
+    if (std::string(tree) != "binary" && !has_wide) continue;
+    bench.measure("trace_primary", primary, tree, add);
+    bench.measure("trace_diffuse", bounced, tree, add);
   }
 }
 

@@ -14,11 +14,14 @@ struct CheckedDevice {
 
   // `morton_bits`: 30 or 60, see morton_bits_for.
   BuildOptions build_options(const Options& options, std::uint32_t morton_bits) const;
-  // Of the binary tree.
+  // Of the binary tree; of the wide one, whether it is walked in packets.
   TraceOptions trace_options(const Options& options) const;
   // Whether a picture of a scene of so many triangles is traced through the wide tree. Throws InputError
   // where the options ask for it and cannot have it.
   bool walks_wide(const Options& options, std::uint32_t triangle_count) const;
+
+ private:
+  bool packets(const Options& options) const;
 };
 
 // Throws DeviceError if there is no such device or it fails.

@@ -32,8 +32,8 @@ struct HitTolerance {
   LockstepExecutor::Tolerate judge(const LockstepExecutor& executor, const TracePlan& plan) {
     return [this, &executor, &plan](const Difference& difference) {
       if (difference.stage != "trace_closest" && difference.stage != "trace_wide" &&
-          difference.stage != "trace_brute_force" && difference.stage != "shade" &&
-          difference.stage != "resolve" && difference.stage != "camera_rays") {
+          difference.stage != "trace_wide_single" && difference.stage != "trace_brute_force" &&
+          difference.stage != "shade" && difference.stage != "resolve" && difference.stage != "camera_rays") {
         return false;
       }
       ++stages;

@@ -78,8 +78,8 @@ void print_render(const RenderReport& report, const Options& options, double loa
 }  // namespace
 
 int run_render(const Options& options) {
-  if (options.tracer == "cpu" && options.tree == "wide")
-    throw InputError("--tree wide is for the tracer on the device, not for --tracer cpu");
+  if (options.tracer == "cpu" && options.tree.starts_with("wide"))
+    throw InputError("--tree " + options.tree + " is for the tracer on the device, not for --tracer cpu");
   check_writable(options.output);
   const auto load_start = Clock::now();
   const Scene scene = open_scene(options.scene);

@@ -121,9 +121,11 @@ void add_tree(CLI::App& command, Options& options) {
   command
       .add_option(
           "--tree", options.tree,
-          "which the device's tracer walks; wide: eight children a node, rays in packets; auto: wide on CPU "
-          "devices where the picture has more rays than the scene triangles")
-      ->check(CLI::IsMember({"auto", "binary", "wide"}))
+          "which the device's tracer walks; wide: eight children a node, rays in packets on CPU devices and "
+          "each by itself on others, or as wide-packets and wide-single ask; auto: wide where the picture "
+          "has "
+          "more rays than the scene triangles, unless the device is known to be slower so")
+      ->check(CLI::IsMember({"auto", "binary", "wide", "wide-packets", "wide-single"}))
       ->capture_default_str();
 }
 

@@ -20,7 +20,7 @@ struct Options {
   std::string morton_bits = "auto";  // auto, 30, 60
   std::uint32_t runs = 5;            // of `build`
   bool rounds = false;               // of `build`: a table of the rounds of PLOC
-  std::string tree = "auto";         // that the device's tracer walks: auto, binary, wide
+  std::string tree = "auto";         // that the device's tracer walks: auto, binary, wide, wide-...
   bool wide = false;                 // of `build`: convert the tree to wide nodes, too
   std::uint32_t frames = 1;          // of `render`: the whole frame so many times
   bool kernels = false;              // of `render`: once more, to print the time of every kernel

@@ -29,10 +29,21 @@ void append_closest_hits(Chain& chain, const TreeSlots& tree, const RaySlots& sl
   if (options.wide) {
     if (options.brute_force || options.triangle_test != TRIANGLE_WATERTIGHT || options.box_test != BOX_ROBUST)
       throw std::invalid_argument("the wide tree is traced with the watertight and the robust test");
-    chain.run(stages::trace_wide,
-              {chain.at(tree.wide_nodes), chain.at(tree.wide_counts), chain.at(tree.nodes), triangles, rays,
-               hits, counters, chain.at(tree.state), ray_count, 0},
-              groups_of(ray_count, TRACE_PACKET), {options.max_turns});
+    const TraceWideArgs args{chain.at(tree.wide_nodes),
+                             chain.at(tree.wide_counts),
+                             chain.at(tree.nodes),
+                             triangles,
+                             rays,
+                             hits,
+                             counters,
+                             chain.at(tree.state),
+                             ray_count,
+                             0};
+    if (options.packets) {
+      chain.run(stages::trace_wide, args, groups_of(ray_count, TRACE_PACKET), {options.max_turns});
+    } else {
+      chain.run(stages::trace_wide_single, args, groups_of(ray_count, TRACE_BLOCK), {options.max_turns});
+    }
     return;
   }
   if (!options.brute_force) {

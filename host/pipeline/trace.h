@@ -20,7 +20,8 @@ struct TraceOptions {
   std::uint32_t stack_entries = TRACE_STACK_LIMIT;
   std::uint32_t triangle_test = TRIANGLE_WATERTIGHT;
   std::uint32_t box_test = BOX_ROBUST;
-  bool wide = false;              // walk the wide tree, in packets; needs its slots, watertight and robust
+  bool wide = false;              // walk the wide tree; needs its slots, watertight and robust
+  bool packets = true;            // through the wide tree in packets; else each ray by itself
   bool directional_light = true;  // what the scene calls for
 };
 

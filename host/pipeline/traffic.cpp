@@ -148,6 +148,10 @@ std::optional<Bytes> trace_bytes(const Step& step, const RunCounts& counts) {
     const Bytes walked = counts.steps / TRACE_PACKET * sizeof(WideNode) + counts.hits * sizeof(Triangle);
     return a->ray_count * ray_and_hit + share(walked, a->ray_count, counts);
   }
+  if (const auto* a = args_of(step, stages::trace_wide_single)) {
+    const Bytes walked = counts.steps * sizeof(WideNode) + counts.hits * sizeof(Triangle);
+    return a->ray_count * ray_and_hit + share(walked, a->ray_count, counts);
+  }
   if (const auto* a = args_of(step, stages::trace_brute_force))
     return a->ray_count * ray_and_hit + a->triangle_count * sizeof(Triangle);
   if (const auto* a = args_of(step, stages::bounce_rays))

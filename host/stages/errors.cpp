@@ -19,7 +19,8 @@ std::string describe_error_word(std::uint32_t error_word) {
       {ERROR_PLOC_ROUNDS, "ploc_finish: the rounds did not end with one cluster within their bound"},
       {ERROR_TREE_TOO_DEEP, "trace_closest: the tree is deeper than the traversal stack"},
       {ERROR_TRACE_STEPS,
-       "trace_closest or trace_wide: a ray needs more steps than this driver's loops may take"},
+       "trace_closest, trace_wide or trace_wide_single: a ray needs more steps than this driver's loops may "
+       "take"},
       {ERROR_WIDE_TOO_DEEP, "wide_root: the tree is deeper than the conversion to wide nodes takes"},
   };
   std::string description;

@@ -34,6 +34,7 @@
   STAGE(camera_rays, CameraRaysArgs)            \
   STAGE(trace_closest, TraceClosestArgs)        \
   STAGE(trace_wide, TraceWideArgs)              \
+  STAGE(trace_wide_single, TraceWideArgs)       \
   STAGE(trace_brute_force, TraceBruteForceArgs) \
   STAGE(bounce_rays, BounceRaysArgs)            \
   STAGE(shade, ShadeArgs)                       \

@@ -6,6 +6,7 @@ INTERFACE_BEGIN
 const uint CAMERA_RAYS_GROUP = 64;
 const uint TRACE_GROUP = 64;
 const uint TRACE_PACKET = 64;  // rays that trace_wide takes through the tree together
+const uint TRACE_BLOCK = 64;   // rays of a subgroup of trace_wide_single
 const uint BOUNCE_RAYS_GROUP = 64;
 const uint SHADE_GROUP = 64;
 const uint RESOLVE_GROUP = 64;
@@ -70,7 +71,7 @@ struct Lighting {
 };
 
 // Counted on the device; 64-bit sums as (low, high) words. Steps are pairs of binary nodes that rays visit,
-// or wide nodes that their packets visit.
+// or wide nodes that they, or their packets, visit.
 struct TraceCounters {
   uvec2 rays, hits, steps;
   uint padding0, padding1;

@@ -1,0 +1,133 @@
+#include <algorithm>
+#include <bit>
+#include <cfloat>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "interface/trace.h"
+#include "twins/intersect.h"
+#include "twins/trace_counts.h"
+
+namespace coppice::twins {
+
+namespace {
+
+constexpr float room_for_rounding = 0x1p-18f;
+constexpr float farthest_reach = 0x1p60f;
+constexpr float most_inverse = 0x1p64f;
+constexpr float share_of_range = 1 - 0x1p-10f;
+
+// The distances of one ray to the planes of wide nodes: t plus an offset, so that all are positive.
+class Distances {
+ public:
+  Distances(const TraceRay& ray, const vec3& box_min, const vec3& box_max) : origin_(ray.origin) {
+    float reach[3];
+    for (int axis = 0; axis < 3; ++axis)
+      reach[axis] =
+          std::max(std::fabs(box_min[axis] - ray.origin[axis]), std::fabs(box_max[axis] - ray.origin[axis]));
+    const float along = reach[ray.axis];
+    const float far_end = along * 1.25f * std::fabs(ray.stretch);
+    const int exponent = far_end < FLT_MIN ? FLT_MIN_EXP - 1 : std::ilogb(far_end) + 1;
+    range_ = std::ldexp(1.0f, std::min(exponent, 125));
+    offset_ = ray.t_min < 0 ? 3 * range_ : range_;
+    const bool meets_all = !(std::max({reach[0], reach[1], reach[2]}) < farthest_reach);
+    first = meets_all ? 0 : std::clamp(ray.t_min, -range_, 2 * range_) + offset_;
+    for (int axis = 0; axis < 3; ++axis) {
+      inverse_[axis] =
+          std::isinf(ray.inverse[axis]) ? std::copysign(most_inverse, ray.inverse[axis]) : ray.inverse[axis];
+      const float coordinate = std::max(std::fabs(box_min[axis]), std::fabs(box_max[axis]));
+      pad_[axis] = (reach[axis] + along + coordinate) * room_for_rounding * std::fabs(inverse_[axis]);
+      if (!meets_all) continue;
+      inverse_[axis] = 0;
+      pad_[axis] = 2 * offset_;
+    }
+  }
+
+  // How far a hit at t is.
+  float of_hit(float t) const { return std::min(t, range_ * share_of_range) + offset_; }
+
+  // Where the ray enters a child's box; false if it misses it up to `limit`.
+  bool meet(const WideNode& node, uint child, float limit, float& enter) const {
+    const auto* const bytes = reinterpret_cast<const std::uint8_t*>(node.planes) + 6 * child;
+    enter = first;
+    float leave = limit;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float cell = std::bit_cast<float>((node.exponents >> (8 * axis) & 0xff) << 23);
+      const float scale = cell * inverse_[axis], start = (node.origin[axis] - origin_[axis]) * inverse_[axis];
+      const bool backward = inverse_[axis] < 0;
+      const std::uint8_t near = bytes[backward ? axis + 3 : axis], far = bytes[backward ? axis : axis + 3];
+      enter = std::max(enter, near * scale + (start - (pad_[axis] - offset_)));
+      leave = std::min(leave, far * scale + (start + (pad_[axis] + offset_)));
+    }
+    return enter <= leave;
+  }
+
+  float first;
+
+ private:
+  vec3 origin_;
+  float inverse_[3], pad_[3], range_, offset_;
+};
+
+// The distance as far as a list of children keeps it: 13 bits of the mantissa, since exponents are the same.
+uint kept_bits(float distance) { return std::bit_cast<uint>(distance) >> 10 & 0x1fff; }
+
+struct Visit {
+  uint kept;  // bits of the distance
+  uint word;  // of the child
+};
+
+// Depth-first, nearest child first. Returns how many nodes it visited.
+uint trace(const TraceWideArgs& args, const TraceRay& ray, Hit& hit) {
+  const Node& root = args.nodes[0];
+  const Distances distances(ray, root.box_min, root.box_max);
+  uint visited = 0;
+  for (std::vector<Visit> stack = {{0, 0}}; !stack.empty();) {
+    const Visit visit = stack.back();
+    stack.pop_back();
+    if (visit.kept > kept_bits(distances.of_hit(hit.t))) continue;
+    if (visit.word >= WIDE_LEAF) {
+      const uint triangle = visit.word & ~WIDE_LEAF;
+      ray_meets_triangle(ray, args.triangles[triangle], triangle, TRIANGLE_WATERTIGHT, hit);
+      continue;
+    }
+    ++visited;
+    const WideNode& node = args.wide_nodes[visit.word];
+    struct Met {
+      uint key;
+      Visit visit;
+    };
+    std::vector<Met> met;
+    for (uint child = 0; child < WIDE_CHILDREN; ++child) {
+      float enter;
+      if (node.child[child] == WIDE_EMPTY || !distances.meet(node, child, distances.of_hit(hit.t), enter))
+        continue;
+      met.push_back({(std::bit_cast<uint>(enter) & ~(WIDE_CHILDREN - 1)) | child,
+                     {kept_bits(enter), node.child[child]}});
+    }
+    std::ranges::sort(met, std::greater(), &Met::key);
+    for (const Met& child : met) stack.push_back(child.visit);
+  }
+  return visited;
+}
+
+}  // namespace
+
+void trace_wide_single(const TraceWideArgs& args) {
+  TraceCounters& counters = args.counters[0];
+  for (uint i = 0; i < args.ray_count; ++i) {
+    TraceRay ray(args.rays[i]);
+    if (args.wide_counts[0].node_count != 0 && ray.is_sound) {
+      const Node& root = args.nodes[0];
+      ray.approach(root.box_min, root.box_max);
+      Hit hit = ray.prepared(args.hits[i]);
+      count_into(counters.steps, trace(args, ray, hit));
+      ray.keep(hit, args.hits[i]);
+    }
+    count_into(counters.rays, 1);
+    count_into(counters.hits, args.hits[i].triangle != NO_TRIANGLE);
+  }
+}
+
+}  // namespace coppice::twins

@@ -1,0 +1,60 @@
+// The children of a wide node that one ray meets, nearest first. Needs `args` with wide nodes, and grid_ray.glsl.
+
+layout(buffer_reference, scalar, buffer_reference_align = 16) buffer WideWordsBuffer { u64vec4 at[]; };
+
+const uint NO_KEY = 0x7fffffffu;
+
+int plane_distance(uint bytes, uint shift, float scale, float start) {
+  precise float distance = float(int((bytes >> shift) & 0xffu)) * scale + start;
+  return floatBitsToInt(distance);
+}
+
+// Where the ray enters the box and, in the three lowest bits, the child; NO_KEY for a box that it misses up to `limit`.
+// The lowest three bytes of `low` and `high` are the box' planes.
+uint child_key(GridRay grid, uint low, uint high, uint child, vec3 scale, vec3 near_start, vec3 far_start, int limit) {
+  uint swapped = (low ^ high) & grid.backward;
+  uint near = low ^ swapped, far = high ^ swapped;
+  int enter = max(max(plane_distance(near, 0u, scale.x, near_start.x), plane_distance(near, 8u, scale.y, near_start.y)),
+                  max(plane_distance(near, 16u, scale.z, near_start.z), grid.first));
+  int leave = min(min(plane_distance(far, 0u, scale.x, far_start.x), plane_distance(far, 8u, scale.y, far_start.y)),
+                  min(plane_distance(far, 16u, scale.z, far_start.z), limit));
+  return enter <= leave ? (uint(enter) & ~(WIDE_CHILDREN - 1u)) | child : NO_KEY;
+}
+
+void put_in_order(inout uint a, inout uint b) {
+  uint lower = min(a, b), higher = max(a, b);
+  a = lower;
+  b = higher;
+}
+
+// Batcher's network, 19 comparisons; by minimum and maximum of integers, one instruction each on CPU devices.
+void sort_keys(inout uint key[WIDE_CHILDREN]) {
+  [[unroll]] for (uint k = 0u; k < 4u; ++k) put_in_order(key[k + (k & 2u)], key[k + (k & 2u) + 2u]);
+  [[unroll]] for (uint k = 0u; k < 4u; ++k) put_in_order(key[k], key[k + 4u]);
+  [[unroll]] for (uint k = 0u; k < 8u; k += 2u) put_in_order(key[k], key[k + 1u]);
+  [[unroll]] for (uint k = 2u; k < 4u; ++k) put_in_order(key[k], key[k + 2u]);
+  [[unroll]] for (uint k = 1u; k < 5u; k += 2u) put_in_order(key[k], key[k + 3u]);
+  [[unroll]] for (uint k = 1u; k < 7u; k += 2u) put_in_order(key[k], key[k + 1u]);
+}
+
+void find_keys(GridRay grid, uint node, int limit, out uint key[WIDE_CHILDREN]) {
+  WideWordsBuffer words = WideWordsBuffer(args.wide_nodes);
+  u64vec4 low = words.at[node * 3u], high = words.at[node * 3u + 1u];
+  uvec2 origin_xy = unpackUint2x32(low.x), origin_z = unpackUint2x32(low.y);
+  uint e = origin_z.y;
+  vec3 cell = uintBitsToFloat(uvec3(e << 23, e << 15, e << 7) & 0x7f800000u);
+  precise vec3 scale = cell * grid.inverse;
+  precise vec3 start = (uintBitsToFloat(uvec3(origin_xy, origin_z.x)) - grid.origin) * grid.inverse;
+  precise vec3 near_start = start - grid.near_pad;
+  precise vec3 far_start = start + grid.far_pad;
+  uvec2 planes[6] = uvec2[6](unpackUint2x32(low.z), unpackUint2x32(low.w), unpackUint2x32(high.x),
+                             unpackUint2x32(high.y), unpackUint2x32(high.z), unpackUint2x32(high.w));
+  [[unroll]] for (uint pair = 0u; pair < WIDE_CHILDREN / 2u; ++pair) {
+    uint first = 3u * pair;
+    uint a = planes[first / 2u][first & 1u], b = planes[(first + 1u) / 2u][(first + 1u) & 1u],
+         c = planes[(first + 2u) / 2u][first & 1u];
+    key[2u * pair] = child_key(grid, a, a >> 24 | b << 8, 2u * pair, scale, near_start, far_start, limit);
+    key[2u * pair + 1u] =
+        child_key(grid, b >> 16 | c << 16, c >> 8, 2u * pair + 1u, scale, near_start, far_start, limit);
+  }
+}
