@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <random>
 
 #include "analysis/compare.h"
@@ -87,6 +88,29 @@ TEST_P(TraceWide, EarlierHitsStay) {
   std::vector<Ray> rays = hard_rays(RayKind::RANDOM, triangles, {}, 1000, 4);
   for (std::size_t i = 0; i < rays.size(); ++i) rays[i].t_max = static_cast<float>(i % 10) * 0.1f;
   EXPECT_GT(expect_same_hits(triangles, rays, "short rays"), 100u);
+}
+
+// Hits behind the origin count where the range says so.
+TEST_P(TraceWide, RangesThatBeginBehindTheOrigin) {
+  const std::vector<Triangle> triangles = random_triangles(2000, 3, 0.1f);
+  std::vector<Ray> rays = hard_rays(RayKind::RANDOM, triangles, {}, 1000, 4);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    rays[i].t_min =
+        i % 10 == 0 ? -std::numeric_limits<float>::infinity() : -0.3f * static_cast<float>(i % 10);
+    if (i % 3 == 0) rays[i].t_max = -0.1f;
+  }
+  EXPECT_GT(expect_same_hits(triangles, rays, "from behind"), 100u);
+}
+
+// Too far away for distances to the planes of a grid; not moved closer either.
+TEST_P(TraceWide, OriginsBeyondAllScenes) {
+  const std::vector<Triangle> triangles = random_triangles(2000, 3, 0.1f);
+  std::vector<Ray> rays;
+  for (int i = 0; i < 100; ++i) {
+    const float x = 0.01f * static_cast<float>(i);
+    rays.push_back({{x, 1 - x, i % 2 == 0 ? -0x1p110f : -0x1p70f}, 0, {0, 0, 1}, 0x1p126f});
+  }
+  EXPECT_GT(expect_same_hits(triangles, rays, "from very far"), 10u);
 }
 
 // Camera rays, which fill packets as they are meant to be filled: all buffers, the count of visited nodes
