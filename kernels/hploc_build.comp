@@ -3,96 +3,42 @@
 //
 // The radix tree over the codes is climbed and not built. Where a node has more clusters than it may leave to its
 // parent they are merged. What is left depends only on the node, so the tree does not depend on who comes first.
-// A subgroup climbs by itself through the nodes that lie within its tile, from left to right with a stack. Nodes whose
-// parents reach over the border arrive at the parent's split in memory, and of two arrivals the second goes on. Nobody
-// waits.
+// A subgroup starts with the greatest nodes that lie within its tile, all leaves of which it merges at once. Their
+// parents reach over the border. Nodes arrive at the parent's split in memory, and of two arrivals the second goes on.
+// Nobody waits.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_shuffle : require
 #include "interface/hploc.h"
 #include "interface/ploc.h"
 #include "lib/ploc_round.glsl"
-#include "lib/ploc_box.glsl"
 
 layout(local_size_x_id = DEVICE_SUBGROUP_SIZE_ID) in;
 layout(constant_id = 0) const uint CLUSTER_LIMIT = HPLOC_CLUSTERS;  // args.cluster_limit
+layout(constant_id = 1) const uint RADIUS = 8u;                     // args.radius
 layout(push_constant, scalar) uniform Push { HplocBuildArgs args; };
 
 #include "lib/hploc_level.glsl"
 #include "lib/subgroup_sync.glsl"
-#include "lib/hploc_merge.glsl"
+#include "lib/hploc_list.glsl"
+#include "lib/hploc_search.glsl"
 
-// A complete node: the places from first to last, and how many clusters are left of them.
-struct Range {
-  uint first, last, clusters;
+shared uint levels[HPLOC_TILE + 1];  // of the split before each place of the tile, and behind the last one
+#include "lib/hploc_merge.glsl"
+#include "lib/hploc_tile.glsl"
+
+// Clusters that wait for those of the sibling.
+layout(buffer_reference, scalar, buffer_reference_align = 16) volatile coherent buffer CoherentNodeWordsBuffer {
+  u64vec4 at[];
 };
 
-shared uint levels[HPLOC_TILE + 1];       // of the split before each place of the tile, and behind the last one
-shared uint open_nodes[2 * HPLOC_LEVELS];  // first place and clusters; each ends where the next one begins
-
-void load_tile(uint first, uint last, uint place_count) {
-  [[dont_unroll]] for (uint i = lane(); i <= last - first; i += lanes()) {
-    uint triangle = args.values.at[first + i];
-    Aabb box = args.boxes.at[triangle];
-    uint words[NODE_WORDS] = uint[NODE_WORDS](
-        floatBitsToUint(box.box_min.x), floatBitsToUint(box.box_min.y), floatBitsToUint(box.box_min.z), triangle,
-        floatBitsToUint(box.box_max.x), floatBitsToUint(box.box_max.y), floatBitsToUint(box.box_max.z), 0u);
-    [[unroll]] for (uint word = 0u; word < NODE_WORDS; ++word) cluster_words[i * NODE_WORDS + word] = words[word];
-    names[i] = first + i;
-    list[i] = i;
-    levels[i] = level_before(first + i, place_count);
-  }
-  if (lane() == 0u) levels[last + 1u - first] = level_before(last + 1u, place_count);
-  sync();
-}
-
-// Puts the clusters of `right` behind those of `left` in the list of the tile, and merges them.
-uint join_in_tile(uint base, Range left, Range right, uint target, Normalisation normalisation) {
-  uint to = left.first - base + left.clusters, from = right.first - base;
-  if (to != from) {
-    [[dont_unroll]] for (uint first = 0u; first < right.clusters; first += lanes()) {
-      uint i = first + lane();
-      uint slot = i < right.clusters ? list[from + i] : 0u;
-      sync();
-      if (i < right.clusters) list[to + i] = slot;
-      sync();
-    }
-  }
-  return merge_list(left.first - base, left.clusters + right.clusters, target, normalisation);
-}
-
-// Completes the nodes within the tile. Returns how many there are without a parent in it, in open_nodes, from left to
-// right.
-uint build_tile(uint first, uint last, uint place_count, Normalisation normalisation) {
-  uint count = 0u;
-  uint bottom = first;  // no open node that waits for its sibling begins before
-  [[dont_unroll]] for (uint place = first; place <= last; ++place) {
-    Range node = Range(place, place, 1u);
-    uint level_behind = levels[place - first + 1u];
-    // Second children first: their sibling, if it lies in the tile, is the last open node.
-    [[dont_unroll]] while (node.first != bottom && levels[node.first - first] < level_behind) {
-      uint word = open_nodes[--count];
-      sync();
-      Range sibling = Range(word >> HPLOC_ARRIVAL_SHIFT, node.first - 1u, word & (HPLOC_LIST - 1u));
-      bool root = sibling.first == 0u && place + 1u == place_count;
-      uint left = join_in_tile(first, sibling, node, root ? 1u : CLUSTER_LIMIT, normalisation);
-      node = Range(sibling.first, place, left);
-    }
-    if (levels[node.first - first] < level_behind) bottom = place + 1u;
-    if (lane() == 0u) open_nodes[count] = node.first << HPLOC_ARRIVAL_SHIFT | node.clusters;
-    ++count;
-    sync();
-  }
-  return count;
-}
-
-// Leaves a node's clusters in memory; `base`: where they are in the list.
-void publish(Range node, uint base) {
-  CoherentUintBuffer words = CoherentUintBuffer(args.clusters);
-  [[dont_unroll]] for (uint i = lane(); i < node.clusters * NODE_WORDS; i += lanes()) {
-    uint slot = list[base + i / NODE_WORDS], word = i % NODE_WORDS;
-    words.at[names[slot] * NODE_WORDS + word] = cluster_words[slot * NODE_WORDS + word];
-    if (word == 0u) args.cluster_names.at[node.first + i / NODE_WORDS] = names[slot];
+// Leaves a node's clusters in memory.
+void publish(Range node, List its) {
+  CoherentNodeWordsBuffer clusters = CoherentNodeWordsBuffer(args.clusters);
+  [[dont_unroll]] for (uint i = lane(); i < node.clusters; i += LANES) {
+    uint slot = list[its.base + i];
+    clusters.at[node.first + i] = cluster_words[slot];
+    args.cluster_names.at[node.first + i] = name_of(slot, its);
   }
   memoryBarrierBuffer();
   sync();
@@ -114,25 +60,24 @@ uint arrive(Range node, uint split) {
   return found;
 }
 
-// Brings the published clusters of both children into the first slots, in order.
-void fetch(Range left, Range right) {
-  [[dont_unroll]] for (uint i = lane(); i < left.clusters + right.clusters; i += lanes()) {
+// Brings the published clusters of both children into the first slots, in order. Returns whether one is tall.
+bool fetch(Range left, Range right) {
+  CoherentNodeWordsBuffer clusters = CoherentNodeWordsBuffer(args.clusters);
+  bool tall = false;
+  [[dont_unroll]] for (uint i = lane(); i < left.clusters + right.clusters; i += LANES) {
     uint place = i < left.clusters ? left.first + i : right.first + i - left.clusters;
-    uint name = args.cluster_names.at[place];
-    names[i] = name;
+    u64vec4 words = clusters.at[place];
+    cluster_words[i] = words;
+    names[i] = args.cluster_names.at[place];
     list[i] = i;
+    tall = tall || node_of(words).height >= HPLOC_TALL;
   }
   sync();
-  CoherentUintBuffer words = CoherentUintBuffer(args.clusters);
-  [[dont_unroll]] for (uint i = lane(); i < (left.clusters + right.clusters) * NODE_WORDS; i += lanes())
-    cluster_words[i] = words.at[names[i / NODE_WORDS] * NODE_WORDS + i % NODE_WORDS];
-  sync();
+  return subgroupAny(tall);
 }
 
 void write_root() {
-  UintBuffer node_words = UintBuffer(args.nodes);
-  [[dont_unroll]] for (uint word = lane(); word < NODE_WORDS; word += lanes())
-    node_words.at[word] = cluster_words[list[0] * NODE_WORDS + word];
+  if (lane() == 0u) NodeWordsBuffer(args.nodes).at[0] = cluster_words[list[0]];
 }
 
 // Climbs from a published node as long as its sibling is there before it.
@@ -142,27 +87,19 @@ void climb(Range node, uint place_count, Normalisation normalisation) {
     uint word = arrive(node, second ? node.first - 1u : node.last);
     if (word == 0u) return;
     uint far_end = word >> HPLOC_ARRIVAL_SHIFT, far_clusters = word & (HPLOC_LIST - 1u);
-    Range sibling = second ? Range(far_end, node.first - 1u, far_clusters)
-                           : Range(node.last + 1u, far_end, far_clusters);
-    if (second) fetch(sibling, node);
-    else fetch(node, sibling);
-    node.first = min(node.first, sibling.first);
-    node.last = max(node.last, sibling.last);
-    bool root = node.first == 0u && node.last + 1u == place_count;
-    node.clusters =
-        merge_list(0u, node.clusters + far_clusters, root ? 1u : CLUSTER_LIMIT, normalisation);
+    Range left = second ? Range(far_end, node.first - 1u, far_clusters) : node;
+    Range right = second ? node : Range(node.last + 1u, far_end, far_clusters);
+    bool tall = fetch(left, right);
+    List its = List(0u, left.clusters + right.clusters, 0u, true);
+    bool root = left.first == 0u && right.last + 1u == place_count;
+    uint clusters = merge_list(its, root ? 1u : CLUSTER_LIMIT, tall, normalisation);
     if (root) {
       write_root();
       return;
     }
-    publish(node, 0u);
+    node = Range(left.first, right.last, clusters);
+    publish(node, its);
   }
-}
-
-Range open_node(uint i, uint count, uint last) {
-  uint word = open_nodes[i];
-  uint end = i + 1u < count ? (open_nodes[i + 1u] >> HPLOC_ARRIVAL_SHIFT) - 1u : last;
-  return Range(word >> HPLOC_ARRIVAL_SHIFT, end, word & (HPLOC_LIST - 1u));
 }
 
 void main() {
@@ -179,15 +116,18 @@ void main() {
   Normalisation normalisation = scene_normalisation(state);
 
   load_tile(first, last, state.active_count);
-  uint count = build_tile(first, last, state.active_count, normalisation);
-  if (first == 0u && count == 1u && last + 1u == state.active_count) {
+  uint count = find_ranges(first, last);
+  bool root = count == 1u && first == 0u && last + 1u == state.active_count;
+  [[dont_unroll]] for (uint i = 0u; i < count; ++i) {
+    Range node = range_of(i, last);
+    List its = List(node.first - first, node.last - node.first + 1u, first, false);
+    node.clusters = merge_list(its, root ? 1u : CLUSTER_LIMIT, false, normalisation);
+    if (!root) publish(node, its);
+    keep_range(i, node);
+  }
+  if (root) {
     write_root();
     return;
   }
-  [[dont_unroll]] for (uint i = 0u; i < count; ++i) {
-    Range node = open_node(i, count, last);
-    publish(node, node.first - first);
-  }
-  [[dont_unroll]] for (uint i = 0u; i < count; ++i)
-    climb(open_node(i, count, last), state.active_count, normalisation);
+  [[dont_unroll]] for (uint i = 0u; i < count; ++i) climb(range_of(i, last), state.active_count, normalisation);
 }

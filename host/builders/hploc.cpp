@@ -61,15 +61,18 @@ class Hploc {
       return {{static_cast<std::uint32_t>(begin), leaf, box}};
     }
     const std::size_t split = split_of(begin, end);
-    Clusters clusters = merged(clusters_of(begin, split), HPLOC_CLUSTERS);
-    const Clusters right = merged(clusters_of(split, end), HPLOC_CLUSTERS);
+    const bool within_tile = begin / HPLOC_TILE == (end - 1) / HPLOC_TILE;
+    const std::size_t most = within_tile ? HPLOC_TILE : HPLOC_CLUSTERS;
+    Clusters clusters = merged(clusters_of(begin, split), most);
+    const Clusters right = merged(clusters_of(split, end), most);
     clusters.insert(clusters.end(), right.begin(), right.end());
     return clusters;
   }
 
   Clusters merged(Clusters clusters, std::size_t most) {
-    const bool pairs_all =
+    const bool tall =
         std::ranges::any_of(clusters, [](const Cluster& c) { return c.node.height >= HPLOC_TALL; });
+    bool pairs_all = tall;
     while (clusters.size() > most) {
       std::vector<std::size_t> partner(clusters.size());
       if (pairs_all) {
@@ -77,7 +80,9 @@ class Hploc {
       } else {
         find_nearest(clusters, partner);
       }
+      const std::size_t before = clusters.size();
       clusters = merge_mutual(clusters, partner);
+      pairs_all = tall || (before - clusters.size()) * HPLOC_SLOW_ROUND < before;
     }
     return clusters;
   }

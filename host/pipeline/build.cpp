@@ -149,7 +149,7 @@ void append_hploc(Chain& chain, const BuildPlan& plan) {
             {chain.at(plan.boxes), chain.at(plan.keys[0]), chain.at(plan.values[0]), chain.at(plan.nodes),
              chain.at(plan.clusters[0]), chain.at(plan.cluster_names), chain.at(plan.arrivals),
              chain.at(plan.state), plan.options.morton_bits / 30, plan.options.radius, cluster_limit, 0},
-            rows == 0 ? uvec3(0) : tiles(tile_count, rows, rows), {cluster_limit});
+            rows == 0 ? uvec3(0) : tiles(tile_count, rows, rows), {cluster_limit, plan.options.radius});
 }
 
 }  // namespace

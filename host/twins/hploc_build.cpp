@@ -54,24 +54,42 @@ class HplocTwin {
   }
 
  private:
+  static bool within_tile(uint first, uint last) { return first / HPLOC_TILE == last / HPLOC_TILE; }
+
   RadixNode joined(RadixNode left, RadixNode right) {
-    if (left.first / HPLOC_TILE != right.last / HPLOC_TILE) {
-      publish(left);
-      publish(right);
-    }
     const bool root = left.first == 0 && right.last + 1 == count_;
+    const bool tile = within_tile(left.first, right.last);
+    if (!tile) {
+      leave_to_other_tiles(left);
+      leave_to_other_tiles(right);
+    }
     RadixNode node{left.first, right.last, std::move(left.names)};
     node.names.insert(node.names.end(), right.names.begin(), right.names.end());
-    const bool tall =
-        std::ranges::any_of(node.names, [&](uint name) { return clusters_[name].height >= HPLOC_TALL; });
-    while (node.names.size() > (root ? 1 : args_.cluster_limit)) merge_round(node.names, tall);
+    // An LBVH has no more to decide.
+    if (root || !tile || args_.cluster_limit == 1) merge(node.names, root ? 1 : args_.cluster_limit);
     return node;
+  }
+
+  void leave_to_other_tiles(RadixNode& node) {
+    if (within_tile(node.first, node.last)) merge(node.names, args_.cluster_limit);
+    publish(node);
+  }
+
+  void merge(std::vector<uint>& names, std::size_t target) {
+    const bool tall =
+        std::ranges::any_of(names, [&](uint name) { return clusters_[name].height >= HPLOC_TALL; });
+    bool pair_all = tall;
+    while (names.size() > target) {
+      const std::size_t before = names.size();
+      merge_round(names, pair_all);
+      pair_all = tall || (before - names.size()) * HPLOC_SLOW_ROUND < before;
+    }
   }
 
   void publish(const RadixNode& node) {
     for (std::size_t i = 0; i < node.names.size(); ++i) {
       args_.cluster_names[node.first + i] = node.names[i];
-      args_.clusters[node.names[i]] = clusters_[node.names[i]];
+      args_.clusters[node.first + i] = clusters_[node.names[i]];
     }
   }
 

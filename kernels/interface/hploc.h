@@ -14,8 +14,12 @@ const uint HPLOC_LIST = 2 * HPLOC_CLUSTERS;  // clusters of one merge, at most
 const uint HPLOC_TALL = 128;
 const uint HPLOC_MAX_HEIGHT = 238;  // of any tree
 
-// What one workgroup, a single subgroup, builds by itself.
-const uint HPLOC_TILE = 256;  // places
+// Where a round merges fewer than 1 / HPLOC_SLOW_ROUND of its clusters the next one pairs all.
+const uint HPLOC_SLOW_ROUND = 32;
+
+// What one workgroup, a single subgroup, builds by itself. The tree depends on it: a node of the radix tree
+// that lies within a tile, as its parent does, leaves all its clusters to its parent.
+const uint HPLOC_TILE = 512;  // places
 
 // A split lies between two places. The deeper in the radix tree it is, the lower its level: that of a bit of
 // the codes, or, where the codes are equal, of the places. Equal codes differ least.
@@ -29,17 +33,17 @@ const uint HPLOC_ARRIVAL_SHIFT = 5;
 INTERFACE_COHERENT_BUFFER(CoherentNodeBuffer, Node, 16)
 
 struct HplocBuildArgs {
-  AabbBuffer boxes;             // of the triangles
-  UintBuffer keys;              // Morton codes in ascending order, key_words each, low word first
-  UintBuffer values;            // triangle indices in the same order, active ones first
-  NodeBuffer nodes;             // 2 * active_count - 1
-  CoherentNodeBuffer clusters;  // active_count, by name: clusters that cross the border of a tile
-  CoherentUintBuffer
-      cluster_names;            // active_count: names of the clusters left of a node, from its first place on
-  CoherentUintBuffer arrivals;  // active_count: one a split; zero before and after
+  AabbBuffer boxes;   // of the triangles
+  UintBuffer keys;    // Morton codes in ascending order, key_words each, low word first
+  UintBuffer values;  // triangle indices in the same order, active ones first
+  NodeBuffer nodes;   // 2 * active_count - 1
+  CoherentNodeBuffer
+      clusters;  // active_count: those left of a node whose parent lies in no tile, from its first place on
+  CoherentUintBuffer cluster_names;  // active_count: their names
+  CoherentUintBuffer arrivals;       // active_count: one a split; zero before and after
   BuildStateBuffer state;
   uint key_words;
-  uint radius;
+  uint radius;         // for the twin: in the kernel the constant RADIUS
   uint cluster_limit;  // HPLOC_CLUSTERS or 1
   uint padding;
 };

@@ -21,7 +21,6 @@ u64vec4 words_of(Node node) {
 }
 
 Node load_node(NodeBuffer nodes, uint i) { return node_of(NodeWordsBuffer(nodes).at[i]); }
-
 void store_node(NodeBuffer nodes, uint i, Node node) { NodeWordsBuffer(nodes).at[i] = words_of(node); }
 
 Aabb load_box(AabbBuffer boxes, uint i) {
