@@ -26,12 +26,13 @@ void load_tile(uint first, uint last, uint place_count) {
     uint up_to = max(greatest_up_to(level), highest);
     if (i <= count) levels[i] = level | (level == up_to ? LEFT_END : 0u);
     highest = subgroupBroadcast(up_to, LANES - 1u);
-    if (i < count) {
-      uint triangle = args.values.at[first + i];
-      Aabb box = load_box(args.boxes, triangle);
-      cluster_words[i] = words_of(Node(box.box_min, triangle, box.box_max, 0u));
-      list[i] = i;
-    }
+  }
+  // By itself, so that more of these reads are on their way at a time.
+  [[dont_unroll]] for (uint i = lane(); i < count; i += LANES) {
+    uint triangle = args.values.at[first + i];
+    Aabb box = load_box(args.boxes, triangle);
+    cluster_words[i] = words_of(Node(box.box_min, triangle, box.box_max, 0u));
+    list[i] = i;
   }
   sync();
 }
