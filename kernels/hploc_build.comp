@@ -8,7 +8,6 @@
 // Nobody waits.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_KHR_shader_subgroup_shuffle : require
 #include "interface/hploc.h"
 #include "interface/ploc.h"
 #include "lib/ploc_round.glsl"
@@ -19,7 +18,7 @@ layout(constant_id = 1) const uint RADIUS = 8u;                     // args.radi
 layout(push_constant, scalar) uniform Push { HplocBuildArgs args; };
 
 #include "lib/hploc_level.glsl"
-#include "lib/subgroup_sync.glsl"
+#include "lib/subgroup.glsl"
 #include "lib/hploc_list.glsl"
 #include "lib/hploc_search.glsl"
 

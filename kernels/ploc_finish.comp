@@ -3,7 +3,6 @@
 // rounds have few blocks, where the steps of one subgroup take less time than barriers between many.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_KHR_shader_subgroup_shuffle : require
 #include "interface/ploc.h"
 #include "lib/ploc_round.glsl"
 
@@ -12,7 +11,7 @@ layout(constant_id = 0) const uint RADIUS = 8u;  // args.radius
 layout(push_constant, scalar) uniform Push { PlocFinishArgs args; };
 
 #include "lib/node_words.glsl"
-#include "lib/subgroup_sync.glsl"
+#include "lib/subgroup.glsl"
 #include "lib/ploc_tile.glsl"
 #include "lib/ploc_place.glsl"
 

@@ -5,7 +5,6 @@
 // surroundings, merges mutual ones, and compacts the rest by a prefix scan over the tiles, which also numbers the nodes.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_KHR_shader_subgroup_shuffle : require
 #include "interface/ploc.h"
 #include "lib/ploc_round.glsl"
 

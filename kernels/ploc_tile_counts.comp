@@ -2,7 +2,6 @@
 // merging without lookback.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_KHR_shader_subgroup_shuffle : require
 #include "interface/ploc.h"
 #include "lib/ploc_round.glsl"
 

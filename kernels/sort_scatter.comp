@@ -32,7 +32,7 @@ void store_pair(uint place, Pair pair) {
 
 void load_counters() {
   if (LANES_IN_STEP) return;
-  for (uint digit = lane(); digit < DIGITS; digit += SUBGROUP_SIZE)
+  for (uint digit = lane(); digit < DIGITS; digit += LANES)
     digit_counters[digit] = args.tile_digits.at[first_counter() + digit];
   sync();
 }
@@ -40,7 +40,7 @@ void load_counters() {
 // Of one tile: exclusive sums of its counts.
 void scan_counters() {
   uint before = 0u;
-  [[dont_unroll]] for (uint first = 0u; first < DIGITS; first += SUBGROUP_SIZE) {
+  [[dont_unroll]] for (uint first = 0u; first < DIGITS; first += LANES) {
     uint count = counter(first + lane());
     set_counter(first + lane(), before + subgroupExclusiveAdd(count));
     before += subgroupAdd(count);
@@ -66,8 +66,8 @@ void main() {
     load_counters();
   }
   uvec2 places = places_of_tile();
-  [[dont_unroll]] for (uint first = places.x; first < places.y; first += 2u * SUBGROUP_SIZE) {
-    uvec2 at = first + lane() + uvec2(0u, SUBGROUP_SIZE);
+  [[dont_unroll]] for (uint first = places.x; first < places.y; first += 2u * LANES) {
+    uvec2 at = first + lane() + uvec2(0u, LANES);
     uvec2 read = min(at, uvec2(places.y - 1u));
     Pair even = load_pair(read.x), odd = load_pair(read.y);
     scatter(even, at.x < places.y);

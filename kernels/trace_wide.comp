@@ -6,7 +6,6 @@
 // every ray. So this is for rays that begin close to each other and go the same way.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#extension GL_KHR_shader_subgroup_shuffle : require
 #include "interface/trace.h"
 #include "lib/ray_words.glsl"
 #include "lib/trace_counters.glsl"
@@ -21,7 +20,6 @@ const uint TRACE_BOX_TEST = BOX_ROBUST;
 
 #include "lib/intersect_box.glsl"
 #include "lib/intersect_triangle.glsl"
-#include "lib/subgroup_sync.glsl"
 #include "lib/packet.glsl"
 #include "lib/ray_bundle.glsl"
 #include "lib/wide_children.glsl"
@@ -61,7 +59,7 @@ uint list_met(WideChildren children, RayBundle bundle, float farthest) {
   }
   // Where several invocations hold the same child the first one counts: the keys of the others may differ by a zero's
   // sign.
-  bool counts = gl_SubgroupInvocationID < WIDE_CHILDREN;
+  bool counts = lane() < WIDE_CHILDREN;
   [[unroll]] for (uint slot = 0u; slot < SLOTS; ++slot)
     list |= counts && key[slot] != 0xffffffffu ? (LISTED | held_child(slot)) << (4u * rank[slot]) : 0u;
   return packet_or(list);
@@ -93,7 +91,7 @@ Triangle read_triangle(uint triangle) {
   UintBuffer at = UintBuffer(args.triangles);
   uint words[TRIANGLE_LOADS];
   [[unroll]] for (uint load = 0u; load < TRIANGLE_LOADS; ++load) {
-    uint word = gl_SubgroupInvocationID + load * LANES;
+    uint word = lane() + load * LANES;
     words[load] = at.at[triangle * TRIANGLE_WORDS + (word < TRIANGLE_WORDS ? word : 0u)];
   }
   return Triangle(corner(words, 0u), corner(words, 3u), corner(words, 6u));
@@ -136,7 +134,7 @@ uint trace(RayBundle bundle) {
     ++visited;
     if (list != 0u) {
       sync();
-      if (gl_SubgroupInvocationID == 0u) stack[top] = uvec2(node, list);
+      if (lane() == 0u) stack[top] = uvec2(node, list);
       ++top;
     }
     node = next;
@@ -158,7 +156,7 @@ uint trace(RayBundle bundle) {
   return visited;
 }
 
-uint ray_index(uint r) { return gl_WorkGroupID.x * TRACE_PACKET + r * LANES + gl_SubgroupInvocationID; }
+uint ray_index(uint r) { return gl_WorkGroupID.x * TRACE_PACKET + r * LANES + lane(); }
 
 // A ray that hits nothing gets an empty range, and takes no part in the bundle.
 void prepare(uint r, Aabb scene, inout RayBundle bundle) {

@@ -9,13 +9,13 @@
 #extension GL_GOOGLE_include_directive : require
 #include "interface/trace.h"
 #include "lib/ray_words.glsl"
+#include "lib/subgroup.glsl"
 #include "lib/trace_counters.glsl"
 #include "lib/trace_ray.glsl"
 
 layout(local_size_x_id = DEVICE_SUBGROUP_SIZE_ID) in;
 layout(push_constant, scalar) uniform Push { TraceWideArgs args; };
 layout(constant_id = 0) const uint TRACE_MAX_TURNS = 0xffffffffu;  // as in trace_closest
-layout(constant_id = DEVICE_SUBGROUP_SIZE_ID) const uint LANES = 8u;
 
 const uint TRACE_TRIANGLE_TEST = TRIANGLE_WATERTIGHT;
 const uint LEAST_WALKING = LANES / 2u;            // rays for which nodes are visited while others wait
@@ -170,7 +170,7 @@ void main() {
     going = (going || taken < end) && turns < TRACE_MAX_TURNS;
   }
   if (ray_index != NO_INDEX || taken < end) atomicOr(args.state.at[0].error_word, ERROR_TRACE_STEPS);
-  COUNT_INTO(args.counters.at[0].rays, gl_SubgroupInvocationID == 0u ? end - first : 0u)
+  COUNT_INTO(args.counters.at[0].rays, lane() == 0u ? end - first : 0u)
   COUNT_INTO(args.counters.at[0].hits, hit_count)
   COUNT_INTO(args.counters.at[0].steps, visited)
 }

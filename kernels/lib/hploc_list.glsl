@@ -3,8 +3,7 @@
 // A cluster has a slot, which holds its node, and a name, the first place that it took. Of two that merge the first
 // keeps slot and name, and the name j of the other, never 0, gives the pair its place: 2j - 1 and 2j.
 #include "lib/node_words.glsl"
-
-const uint LANES = gl_WorkGroupSize.x;
+#include "lib/subgroup.glsl"
 
 shared u64vec4 cluster_words[HPLOC_TILE];  // nodes by slot
 shared uint names[HPLOC_LIST];             // by slot, of clusters from memory
@@ -19,18 +18,7 @@ struct List {
   bool from_memory;
 };
 
-uint lane() { return gl_SubgroupInvocationID; }
-
 uint name_of(uint slot, List its) { return its.from_memory ? names[slot % HPLOC_LIST] : its.first_place + slot; }
-
-// subgroupInclusiveAdd goes lane by lane on CPU devices.
-uint inclusive_add(uint value) {
-  [[unroll]] for (uint distance = 1u; distance < LANES; distance <<= 1) {
-    uint before = subgroupShuffle(value, (lane() - distance) % LANES);
-    value += lane() >= distance ? before : 0u;
-  }
-  return value;
-}
 
 void join_pairs(uint pair_count, List its) {
   [[dont_unroll]] for (uint i = lane(); i < pair_count; i += LANES) {

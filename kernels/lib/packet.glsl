@@ -1,7 +1,6 @@
 // Values of a subgroup whose invocations walk together. The invocations of a packet are always all active.
 #include "lib/selected.glsl"
-
-layout(constant_id = DEVICE_SUBGROUP_SIZE_ID) const uint LANES = 8u;
+#include "lib/subgroup.glsl"
 
 uint packet_or(uint x) {
   [[unroll]] for (uint m = 1u; m < LANES; m <<= 1) x |= subgroupShuffleXor(x, m);

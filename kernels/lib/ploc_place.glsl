@@ -5,15 +5,6 @@ uint partner_of(uint i);  // as the same lane has kept it
 void store_cluster(uint place, Node cluster);  // of the next round
 void sync_clusters();  // between loads and stores of a block, where both are of the same list
 
-// subgroupInclusiveAdd goes lane by lane on CPU devices.
-uint inclusive_add(uint value) {
-  [[unroll]] for (uint distance = 1u; distance < LANES; distance <<= 1) {
-    uint before = subgroupShuffle(value, (lane() - distance) % LANES);
-    value += lane() >= distance ? before : 0u;
-  }
-  return value;
-}
-
 // Returns the sums up to and with this tile.
 uvec2 place_tile(uint tile, PlocRound round, uvec2 before) {
   uint active_count = args.state.at[0].active_count;

@@ -1,25 +1,13 @@
 // Whom each cluster of a tile merges with, found by one subgroup.
 //
-// The subgroup goes over the list in blocks, a cluster a lane. Boxes of the block and of those that its clusters may
-// merge with are in registers; a box meets the others by shuffles, each pair once, so that its distance serves both. A
-// cluster's left side is complete when its block comes up.
+// The subgroup goes over the list in blocks. Those that the clusters of the current one may merge with are in registers,
+// and what the clusters about it have chosen.
 //
 // The including kernel defines RADIUS, a specialization constant, `args` with the state, and where clusters and
 // partners are kept:
 Node load_cluster(uint i);
 void keep_partner(uint i, uint partner);
-#include "lib/ploc_box.glsl"
-
-const uint LANES = gl_WorkGroupSize.x;
-const uint BLOCKS_AHEAD = (RADIUS + LANES - 1u) / LANES;  // that a cluster may merge with
-
-uint lane() { return gl_SubgroupInvocationID; }
-
-// What is known of the clusters of one block, a cluster a lane.
-struct Block {
-  Box box;
-  Nearest left;
-};
+#include "lib/ploc_meet.glsl"
 
 Block load_block(uint i, uint cluster_count, Normalisation normalisation) {
   Block block = Block(Box(vec3(-FAR), vec3(FAR)), Nearest(NO_AREA, 0u));
@@ -28,21 +16,6 @@ Block load_block(uint i, uint cluster_count, Normalisation normalisation) {
     block.box = Box(normalised(cluster.box_min, normalisation), normalised(cluster.box_max, normalisation));
   }
   return block;
-}
-
-// The lane's box, `gap` lanes further on, of two blocks in a row.
-Box box_ahead(Box near, Box next, uint gap) {
-  bvec3 wrapped = bvec3(lane() < gap);
-  uint from = (lane() + gap) % LANES;
-  return Box(subgroupShuffle(mix(near.box_min, next.box_min, wrapped), from),
-             subgroupShuffle(mix(near.box_max, next.box_max, wrapped), from));
-}
-
-// Of equal distances the earlier one stays: for one block gaps come in ascending order.
-void take_nearer(inout Nearest nearest, bool met, float area, uint gap) {
-  bool nearer = met && area < nearest.area;
-  nearest.area = nearer ? area : nearest.area;
-  nearest.gap = nearer ? gap : nearest.gap;
 }
 
 // How far in the list the nearest neighbours are, of a block and those about it.
@@ -76,39 +49,23 @@ uint search_tile(uint first, uint last, uint cluster_count, bool keep) {
   uint sums = 0u;
   uint i = first - lead + lane();
   Choices choices;
-  Block blocks[BLOCKS_AHEAD + 2u];      // the last one is on its way
+  Blocks blocks;
   [[unroll]] for (uint k = 0u; k <= BLOCKS_AHEAD; ++k) {
-    blocks[k] = load_block(i + k * LANES, cluster_count, normalisation);
+    blocks.at[k] = load_block(i + k * LANES, cluster_count, normalisation);
     choices.blocks[k] = choices.blocks[k + BLOCKS_AHEAD] = 0;
   }
   uint block_count = (last - first + lead + LANES - 1u) / LANES + BLOCKS_AHEAD;
   [[dont_unroll]] for (uint block = 0u; block < block_count; ++block) {
-    blocks[BLOCKS_AHEAD + 1u] = load_block(i + halo + LANES, cluster_count, normalisation);
-    Nearest right = Nearest(NO_AREA, 0u), left[BLOCKS_AHEAD + 1u];
-    [[unroll]] for (uint k = 0u; k <= BLOCKS_AHEAD; ++k) left[k] = right;
-    [[unroll]] for (uint k = 0u; k < BLOCKS_AHEAD; ++k) {
-      [[unroll]] for (uint step = 1u; step <= LANES; ++step) {
-        uint gap = k * LANES + step;
-        if (gap > RADIUS) break;
-        float area = union_area(blocks[0].box, box_ahead(blocks[k].box, blocks[k + 1u].box, step));
-        take_nearer(right, true, area, gap);
-        float area_behind = subgroupShuffle(area, (lane() + LANES - step) % LANES);
-        take_nearer(left[k], lane() >= step, area_behind, gap);
-        take_nearer(left[k + 1u], lane() < step, area_behind, gap);
-      }
-    }
-    // The gaps to this block are smaller than those to the blocks before it.
-    [[unroll]] for (uint k = 0u; k <= BLOCKS_AHEAD; ++k) {
-      if (left[k].area <= blocks[k].left.area) blocks[k].left = left[k];
-    }
-    uint nearest = nearer_side(i, blocks[0].left, right);
+    Block coming = load_block(i + halo + LANES, cluster_count, normalisation);
+    uint nearest = meet_blocks(i, blocks);
     [[unroll]] for (uint k = 0u; k < 2u * BLOCKS_AHEAD; ++k) choices.blocks[k] = choices.blocks[k + 1u];
     choices.blocks[2u * BLOCKS_AHEAD] = int(nearest - i);
     int choice = choices.blocks[BLOCKS_AHEAD];
     int answer = choice_of(halo + lane() + uint(choice), choices);
     bool mutual = choice != 0 && answer == -choice;
     if (block * LANES >= lead + halo && i - halo < last) sums += count_fate(i - halo, choice, mutual, keep);
-    [[unroll]] for (uint k = 0u; k <= BLOCKS_AHEAD; ++k) blocks[k] = blocks[k + 1u];
+    drop_first(blocks);
+    blocks.at[BLOCKS_AHEAD] = coming;
     i += LANES;
   }
   return sums;

@@ -3,14 +3,12 @@
 //
 // The including kernel includes lib/subgroup_match.glsl before.
 
-layout(constant_id = DEVICE_LANES_IN_STEP_ID) const bool LANES_IN_STEP = false;
 layout(constant_id = 0) const uint DIGIT_BITS = SORT_NARROW_BITS;  // args.digit_bits
 layout(constant_id = 1) const uint KEY_WORDS = 1u;                 // args.key_words
 const uint DIGITS = 1u << DIGIT_BITS;
 
 shared uint digit_counters[DIGITS];
 
-uint lane() { return gl_SubgroupInvocationID; }
 uint first_counter() { return gl_WorkGroupID.x << DIGIT_BITS; }
 
 uint counter(uint digit) {
@@ -23,15 +21,10 @@ void set_counter(uint digit, uint value) {
   else digit_counters[digit] = value;
 }
 
-// Between accesses of several invocations to the same counter.
-void sync() {
-  if (!LANES_IN_STEP) subgroupBarrier();
-}
-
 void store_counters() {
   if (LANES_IN_STEP) return;
   sync();
-  for (uint digit = lane(); digit < DIGITS; digit += SUBGROUP_SIZE)
+  for (uint digit = lane(); digit < DIGITS; digit += LANES)
     args.tile_digits.at[first_counter() + digit] = digit_counters[digit];
 }
 
@@ -52,11 +45,11 @@ void count_digit(uint digit) {
 }
 
 void count_tile() {
-  [[dont_unroll]] for (uint digit = lane(); digit < DIGITS; digit += SUBGROUP_SIZE) set_counter(digit, 0u);
+  [[dont_unroll]] for (uint digit = lane(); digit < DIGITS; digit += LANES) set_counter(digit, 0u);
   sync();
   uvec2 places = places_of_tile();
-  [[dont_unroll]] for (uint first = places.x; first < places.y; first += 2u * SUBGROUP_SIZE) {
-    uvec2 at = first + lane() + uvec2(0u, SUBGROUP_SIZE);
+  [[dont_unroll]] for (uint first = places.x; first < places.y; first += 2u * LANES) {
+    uvec2 at = first + lane() + uvec2(0u, LANES);
     uvec2 read = min(at, uvec2(places.y - 1u));
     uint even = key_word(read.x, args.digit_word), odd = key_word(read.y, args.digit_word);
     count_digit(at.x < places.y ? digit_of(even) : DIGITS);

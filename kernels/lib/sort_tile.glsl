@@ -3,10 +3,9 @@
 
 layout(constant_id = 3) const bool RANK_BY_MATCH = false;
 layout(constant_id = 4) const uint GROUP = SORT_RUNS_GROUP;
-layout(constant_id = DEVICE_LANES_IN_STEP_ID) const bool LANES_IN_STEP = false;
 
-const uint ROWS = RANK_BY_MATCH ? GROUP / SUBGROUP_SIZE : GROUP;
-const uint STRIDE = RANK_BY_MATCH ? SUBGROUP_SIZE : 1u;
+const uint ROWS = RANK_BY_MATCH ? GROUP / LANES : GROUP;
+const uint STRIDE = RANK_BY_MATCH ? LANES : 1u;
 
 shared uint digit_rows[SORT_MAX_ROWS * SORT_DIGITS];
 
@@ -26,7 +25,7 @@ uvec2 run_of(uint tile) {
 
 // Between accesses of a subgroup's invocations to its row.
 void sync_row() {
-  if (RANK_BY_MATCH && !LANES_IN_STEP) subgroupBarrier();
+  if (RANK_BY_MATCH) sync();
 }
 
 // The place of the invocation's key by the row's counter of its digit, which is moved on. All of the row's invocations
@@ -46,10 +45,10 @@ uint take_place(uint digit) {
 void count_rows(uint tile) {
   [[dont_unroll]] for (uint i = gl_LocalInvocationIndex; i < ROWS * SORT_DIGITS; i += GROUP) digit_rows[i] = 0u;
   barrier();
-  uint lane = RANK_BY_MATCH ? gl_SubgroupInvocationID : 0u;
+  uint first_key = RANK_BY_MATCH ? lane() : 0u;
   uvec2 run = run_of(tile);
   [[dont_unroll]] for (uint first = run.x; first < run.y; first += STRIDE) {
-    uint i = first + lane;
+    uint i = first + first_key;
     take_place(i < run.y ? digit_of(i) : SORT_DIGITS);
   }
   barrier();

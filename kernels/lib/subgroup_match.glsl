@@ -1,7 +1,7 @@
 // Which invocations of the subgroup hold the same digit. All invocations call these; those without a key give a digit
 // of their own kind, 1 << bits.
 
-layout(constant_id = DEVICE_SUBGROUP_SIZE_ID) const uint SUBGROUP_SIZE = 32u;
+#include "lib/subgroup.glsl"
 
 struct Match {
   uint before;   // earlier invocations with the same digit
@@ -21,12 +21,11 @@ Match match_by_ballot(uint digit, uint bits) {
 
 // In a narrow subgroup each digit is compared with all: on CPU devices less than half the time of ballots.
 Match match_digit(uint digit, uint bits) {
-  if (SUBGROUP_SIZE > 16u) return match_by_ballot(digit, bits);
-  uint lane = gl_SubgroupInvocationID;
+  if (LANES > 16u) return match_by_ballot(digit, bits);
   uint both = 0u;  // four bits count the earlier ones, the next four the later ones
   [[unroll]] for (uint other = 0u; other < 16u; ++other) {
-    if (other >= SUBGROUP_SIZE) continue;
-    uint unit = other < lane ? 1u : other > lane ? 16u : 0u;
+    if (other >= LANES) continue;
+    uint unit = other < lane() ? 1u : other > lane() ? 16u : 0u;
     both += subgroupBroadcast(digit, other) == digit ? unit : 0u;
   }
   return Match(both & 15u, both < 16u);

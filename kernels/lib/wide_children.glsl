@@ -8,7 +8,7 @@ struct WideChildren {
 };
 
 // The child that this invocation holds.
-uint held_child(uint slot) { return (gl_SubgroupInvocationID + slot * LANES) & (WIDE_CHILDREN - 1u); }
+uint held_child(uint slot) { return (lane() + slot * LANES) & (WIDE_CHILDREN - 1u); }
 
 // What the invocation that holds the child has.
 uint of_child(uint x[SLOTS], uint child) {
@@ -35,7 +35,7 @@ uint read_child_word(uint node, uint slot) { return args.wide_nodes.at[node].chi
 void read_children(uint node, out WideChildren children) {
   UintBuffer words = UintBuffer(args.wide_nodes);
   uint first = node * WIDE_NODE_WORDS;
-  uint header = words.at[first + (gl_SubgroupInvocationID & 3u)];
+  uint header = words.at[first + (lane() & 3u)];
   vec3 origin = uintBitsToFloat(
       uvec3(subgroupBroadcast(header, 0u), subgroupBroadcast(header, 1u), subgroupBroadcast(header, 2u)));
   uint exponents = subgroupBroadcast(header, 3u);
