@@ -57,7 +57,11 @@ uint stack_rest[WIDE_MAX_HEIGHT];      // `d`
 uint short_key(uint key) { return (key >> 7 & 0xfff8u) | (key & 7u); }
 uint short_keys(uint first, uint second) { return short_key(first) | short_key(second) << 16; }
 
-bool lists_any() { return (list.a & 0xffffu) <= short_key(uint(limit) | 7u); }
+// The limit may be no distance within the scene, where a range ends before it; then its short key may be any.
+bool lists_any() {
+  uint nearest = list.a & 0xffffu;
+  return nearest != NO_CHILD && nearest <= short_key(uint(limit) | 7u);
+}
 
 void push_list() {
   stack_node[top] = packUint2x32(uvec2(node, list.a));

@@ -27,6 +27,7 @@ class TraceWide : public DeviceTest, public testing::WithParamInterface<bool> {
     TraceOptions options = test_trace_options(1, 1);
     options.wide = wide;
     options.packets = GetParam();
+    options.max_turns = std::min(options.max_turns, 1u << 20);  // a walk that does not end fails
     return options;
   }
 
@@ -100,6 +101,23 @@ TEST_P(TraceWide, RangesThatBeginBehindTheOrigin) {
     if (i % 3 == 0) rays[i].t_max = -0.1f;
   }
   EXPECT_GT(expect_same_hits(triangles, rays, "from behind"), 100u);
+}
+
+// The distance of such an end is none of a plane of the scene, whichever bits it has.
+TEST_P(TraceWide, RangesThatEndBeforeTheScene) {
+  std::vector<Triangle> triangles;
+  for (int i = 0; i < 7; ++i) {
+    const float x = 0.1f * static_cast<float>(i);
+    triangles.push_back({{x, 0, 0}, {x + 0.1f, 0, 0.1f}, {x, 1, 1}});
+  }
+  const float infinity = std::numeric_limits<float>::infinity();
+  std::vector<Ray> rays;
+  for (int i = 0; i < 20000; ++i) {
+    const float step = 1e-4f * static_cast<float>(i);
+    rays.push_back({{0.35f, 0.5f, -100}, 0, {0, 0, 1}, 96 + step});
+    rays.push_back({{0.35f, 0.5f, -1}, -infinity, {0, 0, 1}, -5 + step});
+  }
+  EXPECT_EQ(expect_same_hits(triangles, rays, "ends before the scene"), 0u);
 }
 
 // Too far away for distances to the planes of a grid; not moved closer either.
