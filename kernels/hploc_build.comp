@@ -121,12 +121,12 @@ void main() {
     Range node = range_of(i, last);
     List its = List(node.first - first, node.last - node.first + 1u, first, false);
     node.clusters = merge_list(its, root ? 1u : CLUSTER_LIMIT, false, normalisation);
-    if (!root) publish(node, its);
+    if (root) {
+      write_root();
+      return;
+    }
+    publish(node, its);
     keep_range(i, node);
-  }
-  if (root) {
-    write_root();
-    return;
   }
   [[dont_unroll]] for (uint i = 0u; i < count; ++i) climb(range_of(i, last), state.active_count, normalisation);
 }

@@ -41,7 +41,8 @@ void main() {
   uint round_index = first_finish_round();
   PlocRound round = args.rounds.at[round_index];
   uint active_count = args.state.at[0].active_count;
-  load_clusters(round_index, round.cluster_count);
+  // More are left only behind the last round, and then it is an error, set below.
+  load_clusters(round_index, min(round.cluster_count, PLOC_FINISH_CLUSTERS));
 
   [[dont_unroll]] while (round.cluster_count > 1u && round_index < args.rounds_bound) {
     find_partners(0u, round, true);
