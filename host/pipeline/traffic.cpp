@@ -17,8 +17,6 @@ const Args* args_of(const Step& step, const Stage<Args>& stage) {
   return step.stage == &stage ? reinterpret_cast<const Args*>(step.args.data()) : nullptr;
 }
 
-// None of nothing, whatever the size of a tile.
-
 constexpr Bytes digit_row = SORT_DIGITS * sizeof(uint);  // of Onesweep: a word for each digit
 
 Bytes pairs_moved(Bytes count, Bytes key_words, bool has_values) {
@@ -48,8 +46,10 @@ std::optional<Bytes> sort_bytes(const Step& step) {
   if (const auto* a = args_of(step, stages::sort_tile_scan))
     return Bytes{a->tile_count} * 2 * sizeof(uint) << a->digit_bits;
   if (const auto* a = args_of(step, stages::sort_scatter)) {
-    const Bytes times = a->count <= a->tile_keys ? 1 : 2;  // one tile reads no counts
-    return pairs_moved(a->count, a->key_words, a->values_in.value != 0) + times * tile_digits_bytes(*a);
+    const Bytes pairs = pairs_moved(a->count, a->key_words, a->values_in.value != 0);
+    // One tile reads no counts but counts by itself.
+    const bool counts = a->count <= a->tile_keys;
+    return pairs + (counts ? Bytes{a->count} * 4 + tile_digits_bytes(*a) : 2 * tile_digits_bytes(*a));
   }
   return std::nullopt;
 }
