@@ -37,7 +37,8 @@ Grid scene_grid(BuildState state, uint bits) {
 }
 
 uvec3 grid_cell(Aabb box, Grid grid) {
-  precise vec3 centre = (normalised(box.box_min, grid.normalisation) + normalised(box.box_max, grid.normalisation)) * 0.5;
+  precise vec3 centre =
+      (normalised(box.box_min, grid.normalisation) + normalised(box.box_max, grid.normalisation)) * 0.5;
   precise vec3 cell = (centre - grid.origin) * grid.scale;
   return uvec3(cell);
 }

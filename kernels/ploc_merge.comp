@@ -43,7 +43,8 @@ struct Prefix {
 
 Prefix find_tile_prefix(uint tile) {
   if (args.lookback == 0u)
-    return Prefix(uvec2(args.tile_status.at[tile * PLOC_MERGE_SUMS], args.tile_status.at[tile * PLOC_MERGE_SUMS + 1u]), 0u);
+    return Prefix(
+        uvec2(args.tile_status.at[tile * PLOC_MERGE_SUMS], args.tile_status.at[tile * PLOC_MERGE_SUMS + 1u]), 0u);
   uint fallbacks = lookback(args.tile_status, tile);
   return Prefix(uvec2(lookback_prefix[0], lookback_prefix[1]), fallbacks);
 }

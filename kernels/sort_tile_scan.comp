@@ -14,7 +14,8 @@ shared uint sums[DIGITS];
 
 void sum_tiles(uint digit) {
   uint sum = 0u;
-  [[dont_unroll]] for (uint tile = 0u; tile < args.tile_count; ++tile) sum += args.tile_digits.at[tile * DIGITS + digit];
+  [[dont_unroll]] for (uint tile = 0u; tile < args.tile_count; ++tile)
+    sum += args.tile_digits.at[tile * DIGITS + digit];
   sums[digit] = sum;
 }
 
@@ -40,9 +41,10 @@ void place_tiles(uint digit) {
 }
 
 void main() {
-  [[dont_unroll]] for (uint digit = gl_LocalInvocationIndex; digit < DIGITS; digit += SORT_TILE_SCAN_GROUP) sum_tiles(digit);
+  uint first = gl_LocalInvocationIndex;
+  [[dont_unroll]] for (uint digit = first; digit < DIGITS; digit += SORT_TILE_SCAN_GROUP) sum_tiles(digit);
   barrier();
   if (gl_SubgroupID == 0u) scan_digits();
   barrier();
-  [[dont_unroll]] for (uint digit = gl_LocalInvocationIndex; digit < DIGITS; digit += SORT_TILE_SCAN_GROUP) place_tiles(digit);
+  [[dont_unroll]] for (uint digit = first; digit < DIGITS; digit += SORT_TILE_SCAN_GROUP) place_tiles(digit);
 }

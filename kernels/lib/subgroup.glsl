@@ -8,8 +8,9 @@ layout(constant_id = DEVICE_LANES_IN_STEP_ID) const bool LANES_IN_STEP = false;
 
 uint lane() { return gl_SubgroupInvocationID; }
 
-// All reads of the subgroup behind see all writes to shared memory before. Lanes in step need nothing; even a fence would
-// cost CPU devices as much as ten loads.
+// All reads of the subgroup behind see all writes to shared memory before. Lanes in step need nothing, as
+// no compiler moves an access over a store to a place that it cannot tell apart; even a fence would cost CPU devices as
+// much as ten loads.
 void sync() {
   if (!LANES_IN_STEP) subgroupBarrier();
 }
