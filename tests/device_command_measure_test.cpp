@@ -1,6 +1,7 @@
 // What the command line measures: kernels of a build and of a picture, benches, tuned variants.
 #include <nlohmann/json.hpp>
 
+#include "interface/ploc.h"
 #include "support/command.h"
 
 namespace coppice {
@@ -42,7 +43,7 @@ TEST_F(Command, RoundsEndWithOneCluster) {
       EXPECT_EQ(rounds[i]["finish"], false);
     }
     EXPECT_EQ(rounds.back()["finish"], true);
-    EXPECT_LE(rounds.back()["clusters"], 512);
+    EXPECT_LE(rounds.back()["clusters"], PLOC_FINISH_CLUSTERS);
     EXPECT_EQ(rounds.back()["clusters"].get<int>() - rounds.back()["merged"].get<int>(), 1);
   }
 }
@@ -142,33 +143,40 @@ TEST_F(Command, TuneKeepsATableThatLaterRunsRead) {
   const char* const home = std::getenv("XDG_CACHE_HOME");
   const std::string before = home ? home : "";
   setenv("XDG_CACHE_HOME", folder_.c_str(), 1);
-  const auto sort_of_a_build = [](const std::string& arguments, std::string& err) {
+  const auto variants_of_a_build = [](const std::string& arguments, std::string& err) {
     const Outcome build = run("build terrain:500 --runs 1 --json - " + arguments);
     err = build.err;
     EXPECT_EQ(build.status, 0) << build.err;
     return build.status ? "" : nlohmann::json::parse(build.out)["variants"].get<std::string>();
   };
   std::string err;
-  const std::string by_rule = sort_of_a_build("", err);
-  EXPECT_EQ(sort_of_a_build("--variants sort=onesweep-match", err), "sort=onesweep-match");
+  const std::string by_rule = variants_of_a_build("", err);
+  EXPECT_EQ(variants_of_a_build("--variants sort=onesweep-match,trace=wide-single", err),
+            "sort=onesweep-match,trace=wide-single");
 
   const Outcome tune = run("tune --most 3000 --runs 1 --validate --json -");
   ASSERT_EQ(tune.status, 0) << tune.err;
-  const auto stage = nlohmann::json::parse(tune.out)["stages"].at(0);
-  EXPECT_EQ(stage["variants"].size(), 5u);
+  const auto stages = nlohmann::json::parse(tune.out)["stages"];
+  ASSERT_EQ(stages.size(), 2u);
+  EXPECT_EQ(stages[0]["variants"].size(), 5u);
+  EXPECT_EQ(stages[1]["variants"].size(), 3u);
   const std::string table = kept_file(folder_ / "coppice", "variants-");
   ASSERT_FALSE(table.empty());
-  const std::string text = read(table), chosen = "sort=" + stage["chosen"].get<std::string>();
-  EXPECT_TRUE(text.ends_with("\n" + chosen + "\n")) << text;
-  EXPECT_EQ(sort_of_a_build("", err), chosen);
+  const std::string text = read(table), sort = "sort=" + stages[0]["chosen"].get<std::string>(),
+                    trace = "trace=" + stages[1]["chosen"].get<std::string>();
+  EXPECT_TRUE(text.ends_with("\n" + sort + "\n" + trace + "\n")) << text;
+  EXPECT_EQ(variants_of_a_build("", err), sort + "," + trace);
 
-  write(table, text.substr(0, text.rfind('\n', text.size() - 2) + 1) + "sort=scan-11\n");
-  EXPECT_EQ(sort_of_a_build("", err), "sort=scan-11");
-  EXPECT_EQ(sort_of_a_build("--variants default", err), by_rule);
+  write(table, text.substr(0, text.find("sort=")) + "sort=scan-11\ntrace=binary\n");
+  EXPECT_EQ(variants_of_a_build("", err), "sort=scan-11,trace=binary");
+  const Outcome picture = run("render terrain:500 --size 64x48 -o out.png --json -");
+  ASSERT_EQ(picture.status, 0) << picture.err;
+  EXPECT_EQ(nlohmann::json::parse(picture.out)["tree"], "binary");
+  EXPECT_EQ(variants_of_a_build("--variants default", err), by_rule);
   EXPECT_EQ(err.find("variants-"), std::string::npos) << err;
 
   write(table, "corrupt");
-  EXPECT_EQ(sort_of_a_build("", err), by_rule);
+  EXPECT_EQ(variants_of_a_build("", err), by_rule);
   EXPECT_NE(err.find("is no table of variants; ignored"), std::string::npos) << err;
   EXPECT_EQ(std::ranges::count(err, '\n'), 1) << err;
   if (home)

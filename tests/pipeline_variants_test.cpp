@@ -21,6 +21,12 @@ TEST(Variants, RulesGoByPropertiesOfTheDevice) {
   EXPECT_EQ(default_variants(device_named("a")).sort, SORT_SCAN);
   EXPECT_EQ(default_variants(device_named("a", DeviceType::discrete, 32)).sort, SORT_ONESWEEP_MATCH);
   EXPECT_EQ(default_variants(device_named("a", DeviceType::integrated, 8)).sort, SORT_ONESWEEP_RUNS);
+  EXPECT_EQ(default_variants(device_named("a")).trace, TRACE_WIDE_PACKETS);
+  EXPECT_EQ(default_variants(device_named("a", DeviceType::discrete, 32)).trace, TRACE_WIDE_SINGLE);
+  EXPECT_EQ(default_variants(device_named("a", DeviceType::integrated, 8)).trace, TRACE_BINARY);
+  DeviceProperties ends_loops = device_named("a");
+  ends_loops.loop_turn_limit = 65535;
+  EXPECT_EQ(default_variants(ends_loops).trace, TRACE_BINARY);
 }
 
 TEST(Variants, EveryValueOfEveryStageHasANameThatSetsIt) {
@@ -71,7 +77,7 @@ TEST(VariantTable, CorruptAndForeignOnesAreNone) {
   refused("", device, "is no table");
   refused("nonsense\n", device, "is no table");
   refused(good, device_named("b"), "another device");
-  refused(good + "sort=scan\n", device, "end");
+  refused(good + "trace=binary\n", device, "end");
   refused(good + "\n", device, "end");
   std::string other = good;
   other.replace(other.find("scan-11"), 7, "scan-12");

@@ -52,6 +52,10 @@ void bench_trace(CheckedDevice& device, const Options& options, const AddRow& ad
 BenchRow bench_keys(CheckedDevice& device, const Options& options, std::uint32_t count,
                     std::uint32_t key_words, bool has_values, const std::string& preset);
 
+// One row of bench_trace, without the whole picture; `tree` as --tree names it. Throws InputError for a scene
+// that does not open.
+BenchRow bench_primary_rays(CheckedDevice& device, const Options& options, const std::string& tree);
+
 struct NamedBench {
   const char* name;
   void (*run)(CheckedDevice& device, const Options& options, const AddRow& add);

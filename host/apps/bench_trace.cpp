@@ -41,52 +41,80 @@ void add_frame(CheckedDevice& device, Options options, const Scene& scene, Bench
   row.note = note;
 }
 
-// Rays of a scene, and the trees of one builder that they are traced through.
-struct TraceBench {
-  CheckedDevice& device;
-  const Options& options;
-  const Scene& scene;
-  RayTracing& tracing;
+// The primary rays of a scene, and the trees of one builder that rays are traced through.
+class TraceBench {
+ public:
+  TraceBench(CheckedDevice& device, const Options& options, const Scene& scene)
+      : device_(device),
+        options_(options),
+        scene_(scene),
+        arrays_(scene_arrays(scene)),
+        has_wide_(can_trace_wide(device.trace_options(options))),
+        primary_(rays_through(make_film(scene, options.camera, options.width, options.height, 1))),
+        tracing_(device.device, tree(options, arrays_.triangles).nodes, arrays_.triangles,
+                 static_cast<std::uint32_t>(primary_.size()), has_wide_) {}
 
-  // `tree` as --tree has it.
-  void measure(const std::string& name, std::span<const Ray> rays, const std::string& tree,
-               const AddRow& add) const {
-    const std::string input = scene.name + " " + options.builder + " " + tree;
-    if (rays.empty() || !is_wanted(options, name, input)) return;
-    Options frame = options;
-    frame.tree = tree;
-    TraceOptions trace = device.trace_options(frame);
+  // As --tree names them.
+  std::vector<std::string> trees() const {
+    return has_wide_ ? std::vector<std::string>{"binary", "wide-packets", "wide-single"}
+                     : std::vector<std::string>{"binary"};
+  }
+
+  const std::vector<Ray>& primary() const { return primary_; }
+
+  // One from each hit of the primary rays.
+  std::vector<Ray> diffuse() {
+    std::vector<Ray> rays = tracing_.bounce(primary_, device_.trace_options(options_), 1);
+    std::erase_if(rays, [](const Ray& ray) { return ray.direction == vec3(0); });  // of rays that hit nothing
+    return rays;
+  }
+
+  std::string input(const std::string& tree) const {
+    return scene_.name + " " + options_.builder + " " + tree;
+  }
+
+  BenchRow measure(const std::string& name, std::span<const Ray> rays, const std::string& tree) {
+    Options with_tree = options_;
+    with_tree.tree = tree;
+    TraceOptions trace = device_.trace_options(with_tree);
     trace.wide = tree != "binary";
-    check_hits(tracing, rays, trace, device.device.properties().type == DeviceType::cpu);
+    check_hits(tracing_, rays, trace, device_.device.properties().type == DeviceType::cpu);
     const auto run = [&] {
-      const TracedRays traced = tracing.on_device(rays, trace);
+      const TracedRays traced = tracing_.on_device(rays, trace);
       if (traced.error_word) throw DeviceError(describe_error_word(traced.error_word));
       return traced.ms;
     };
-    BenchRow row = bench_row(name, input, rays.size(), measure_steady(steady_options(options, run()), run));
-    if (name == "trace_primary") add_frame(device, frame, scene, row);
-    add(row);
+    return bench_row(name, input(tree), rays.size(), measure_steady(steady_options(options_, run()), run));
   }
+
+ private:
+  static Bvh tree(const Options& options, std::span<const Triangle> triangles) {
+    return find_cpu_builder(find_device_builder(options.builder)->cpu_builder)
+        .build(triangles, {options.radius, morton_bits_for(options, triangles)});
+  }
+
+  CheckedDevice& device_;
+  const Options& options_;
+  const Scene& scene_;
+  SceneArrays arrays_;
+  bool has_wide_;
+  std::vector<Ray> primary_;
+  RayTracing tracing_;
 };
 
-void bench_trees(CheckedDevice& device, const Options& options, const Scene& scene, const SceneArrays& arrays,
-                 const AddRow& add) {
-  const Bvh bvh = find_cpu_builder(find_device_builder(options.builder)->cpu_builder)
-                      .build(arrays.triangles, {options.radius, morton_bits_for(options, arrays.triangles)});
-  const TraceOptions trace = device.trace_options(options);
-  const bool has_wide = trace.triangle_test == TRIANGLE_WATERTIGHT && trace.box_test == BOX_ROBUST;
-  const std::vector<Ray> primary =
-      rays_through(make_film(scene, options.camera, options.width, options.height, 1));
-  RayTracing tracing(device.device, bvh.nodes, arrays.triangles, static_cast<std::uint32_t>(primary.size()),
-                     has_wide);
-  std::vector<Ray> bounced = tracing.bounce(primary, trace, 1);
-  std::erase_if(bounced,
-                [](const Ray& ray) { return ray.direction == vec3(0); });  // of rays that hit nothing
-  const TraceBench bench{device, options, scene, tracing};
-  for (const char* tree : {"binary", "wide-packets", "wide-single"}) {
-    if (std::string(tree) != "binary" && !has_wide) continue;
-    bench.measure("trace_primary", primary, tree, add);
-    bench.measure("trace_diffuse", bounced, tree, add);
+void bench_trees(CheckedDevice& device, const Options& options, const Scene& scene, const AddRow& add) {
+  TraceBench bench(device, options, scene);
+  const std::vector<Ray> diffuse = bench.diffuse();
+  for (const std::string& tree : bench.trees()) {
+    if (is_wanted(options, "trace_primary", bench.input(tree))) {
+      BenchRow row = bench.measure("trace_primary", bench.primary(), tree);
+      Options frame = options;
+      frame.tree = tree;
+      add_frame(device, frame, scene, row);
+      add(row);
+    }
+    if (!diffuse.empty() && is_wanted(options, "trace_diffuse", bench.input(tree)))
+      add(bench.measure("trace_diffuse", diffuse, tree));
   }
 }
 
@@ -94,13 +122,18 @@ void bench_trees(CheckedDevice& device, const Options& options, const Scene& sce
 
 void bench_trace(CheckedDevice& device, const Options& options, const AddRow& add) {
   const Scene scene = open_scene(options.scene);
-  const SceneArrays arrays = scene_arrays(scene);
   Options one = options;
   for (const std::string& builder :
        options.builders.empty() ? std::vector{options.builder} : options.builders) {
     one.builder = builder;
-    bench_trees(device, one, scene, arrays, add);
+    bench_trees(device, one, scene, add);
   }
+}
+
+BenchRow bench_primary_rays(CheckedDevice& device, const Options& options, const std::string& tree) {
+  const Scene scene = open_scene(options.scene);
+  TraceBench bench(device, options, scene);
+  return bench.measure("trace_primary", bench.primary(), tree);
 }
 
 }  // namespace coppice

@@ -37,18 +37,14 @@ TraceOptions CheckedDevice::trace_options(const Options& options) const {
   return trace;
 }
 
-// Packets read a node once for all of their rays, which is what costs a CPU device. GPUs hide the time that
-// reads take, and lose by packets what their rays visit in vain: Aila and Laine 2009, Ylitie, Karras and
-// Laine 2017. That is from the literature and has not been measured here.
 bool CheckedDevice::packets(const Options& options) const {
   if (options.tree == "wide-packets" || options.tree == "wide-single") return options.tree == "wide-packets";
+  if (variants.trace != TRACE_BINARY) return variants.trace == TRACE_WIDE_PACKETS;
   return device.properties().type == DeviceType::cpu;
 }
 
 bool CheckedDevice::walks_wide(const Options& options, std::uint32_t triangle_count) const {
-  const TraceOptions trace = trace_options(options);
-  const bool can =
-      !trace.brute_force && trace.triangle_test == TRIANGLE_WATERTIGHT && trace.box_test == BOX_ROBUST;
+  const bool can = can_trace_wide(trace_options(options));
   if (options.tree != "auto") {
     const bool wide = options.tree != "binary";
     if (wide && !can)
@@ -57,10 +53,7 @@ bool CheckedDevice::walks_wide(const Options& options, std::uint32_t triangle_co
     return wide;
   }
   const std::uint64_t rays = std::uint64_t{options.width} * options.height * options.samples;
-  const DeviceProperties& properties = device.properties();
-  const bool gains =
-      properties.type == DeviceType::cpu ? properties.loop_turn_limit == 0 : properties.subgroup_size >= 32;
-  return can && gains && rays > triangle_count;
+  return can && variants.trace != TRACE_BINARY && rays > triangle_count;
 }
 
 CheckedDevice open_device(const Options& options) {

@@ -12,19 +12,27 @@ namespace coppice {
 namespace {
 
 // What a stage's variants are measured on. Throws DeviceError if the result is wrong.
-using Workload = BenchRow (*)(CheckedDevice&, const Options&);
+using Workload = BenchRow (*)(CheckedDevice&, const Options&, std::string_view variant);
 
 struct TunedStage {
   std::string_view stage;
   Workload workload;
 };
 
-BenchRow sort_workload(CheckedDevice& device, const Options& options) {
+BenchRow sort_workload(CheckedDevice& device, const Options& options, std::string_view) {
   return bench_keys(device, options, options.most / 4 * 4, 1, true, "random");
 }
 
+// Its variants are named as trees are.
+BenchRow trace_workload(CheckedDevice& device, const Options& options, std::string_view variant) {
+  Options quarter = options;  // of a picture: enough rays for any device
+  quarter.width /= 2;
+  quarter.height /= 2;
+  return bench_primary_rays(device, quarter, std::string(variant));
+}
+
 // A line for each of variant_stages().
-constexpr TunedStage tuned_stages[] = {{"sort", sort_workload}};
+constexpr TunedStage tuned_stages[] = {{"sort", sort_workload}, {"trace", trace_workload}};
 
 constexpr std::uint32_t turns = 3;
 constexpr double least_gain = 0.05;  // by less a variant does not displace the one of the rule: that is noise
@@ -37,7 +45,7 @@ std::vector<BenchRow> measure_variants(CheckedDevice& device, const VariantStage
   for (std::uint32_t turn = 0; turn < turns; ++turn) {
     for (std::uint32_t value = 0; value < stage.values.size(); ++value) {
       device.variants.*stage.value = value;
-      BenchRow row = workload(device, options);
+      BenchRow row = workload(device, options, stage.values[value]);
       if (turn == 0 || row.ms.median < best[value].ms.median) best[value] = std::move(row);
     }
   }

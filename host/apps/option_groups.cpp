@@ -121,10 +121,9 @@ void add_tree(CLI::App& command, Options& options) {
   command
       .add_option(
           "--tree", options.tree,
-          "which the device's tracer walks; wide: eight children a node, rays in packets on CPU devices and "
-          "each by itself on others, or as wide-packets and wide-single ask; auto: wide where the picture "
-          "has "
-          "more rays than the scene triangles, unless the device is known to be slower so")
+          "which the device's tracer walks; wide: eight children a node, rays in packets or each by itself, "
+          "as the variant of the stage trace says or the option; auto: by that variant, but binary where the "
+          "scene has more triangles than the picture rays")
       ->check(CLI::IsMember({"auto", "binary", "wide", "wide-packets", "wide-single"}))
       ->capture_default_str();
 }

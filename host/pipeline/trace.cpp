@@ -19,6 +19,11 @@ uvec3 groups_of(std::uint32_t count, std::uint32_t group) { return {divide_up(co
 
 }  // namespace
 
+bool can_trace_wide(const TraceOptions& options) {
+  return !options.brute_force && options.triangle_test == TRIANGLE_WATERTIGHT &&
+         options.box_test == BOX_ROBUST;
+}
+
 void append_closest_hits(Chain& chain, const TreeSlots& tree, const RaySlots& slots, std::uint32_t ray_count,
                          const TraceOptions& options) {
   const uvec3 groups = groups_of(ray_count, TRACE_GROUP);
@@ -27,7 +32,7 @@ void append_closest_hits(Chain& chain, const TreeSlots& tree, const RaySlots& sl
   const auto hits = chain.at(slots.hits);
   const auto counters = chain.at(slots.counters);
   if (options.wide) {
-    if (options.brute_force || options.triangle_test != TRIANGLE_WATERTIGHT || options.box_test != BOX_ROBUST)
+    if (!can_trace_wide(options))
       throw std::invalid_argument("the wide tree is traced with the watertight and the robust test");
     const TraceWideArgs args{chain.at(tree.wide_nodes),
                              chain.at(tree.wide_counts),

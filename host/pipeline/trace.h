@@ -25,6 +25,10 @@ struct TraceOptions {
   bool directional_light = true;  // what the scene calls for
 };
 
+// Whether the wide tree can be walked: its tracers have the watertight and the robust test only, so that the
+// order of visits does not show.
+bool can_trace_wide(const TraceOptions& options);
+
 // Rays, and what they hit: closest hits so far on the way in, t_max and NO_TRIANGLE where there is none yet.
 struct RaySlots {
   Slot<Ray> rays;

@@ -16,7 +16,19 @@ std::uint32_t sort_rule(const DeviceProperties& device) {
   return device.subgroup_size >= 16 ? SORT_ONESWEEP_MATCH : SORT_ONESWEEP_RUNS;
 }
 
-constexpr VariantStage stages[] = {{"sort", sort_values, &Variants::sort, sort_rule}};
+// In the order of TraceVariant.
+constexpr std::string_view trace_values[] = {"binary", "wide-packets", "wide-single"};
+
+// Packets read a node once for all of their rays, which is what costs a CPU device, but for one that ends
+// long loops by itself. GPUs hide the time that reads take, and lose by packets what their rays visit in
+// vain: Aila and Laine 2009, Ylitie, Karras and Laine 2017.
+std::uint32_t trace_rule(const DeviceProperties& device) {
+  if (device.type == DeviceType::cpu) return device.loop_turn_limit == 0 ? TRACE_WIDE_PACKETS : TRACE_BINARY;
+  return device.subgroup_size >= 32 ? TRACE_WIDE_SINGLE : TRACE_BINARY;
+}
+
+constexpr VariantStage stages[] = {{"sort", sort_values, &Variants::sort, sort_rule},
+                                   {"trace", trace_values, &Variants::trace, trace_rule}};
 
 std::string set_variant(std::string_view text, Variants& variants) {
   const std::size_t equals = text.find('=');
