@@ -44,8 +44,19 @@ run_ctest_on() (
   run_ctest "$build_dir" "$@"
 )
 
+# In a process a core: with the sanitizers a process takes longer to start than most of the tests to run.
 host_tests_sanitized() {
-  UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1 run_ctest "$build_dir/sanitize" -L host
+  local shards shard pids=() failures=0
+  shards=$(nproc)
+  for ((shard = 0; shard < shards; ++shard)); do
+    UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1 GTEST_TOTAL_SHARDS=$shards GTEST_SHARD_INDEX=$shard \
+      timeout "$((2 * test_timeout))" "$build_dir/sanitize/host_tests" --gtest_brief=1 &
+    pids+=($!)
+  done
+  for pid in "${pids[@]}"; do
+    wait "$pid" || ((++failures))
+  done
+  ((failures == 0))
 }
 
 # Coverage-guided, from the corpus on. What it finds new stays in the build folder and is where the next run
