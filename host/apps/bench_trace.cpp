@@ -51,7 +51,7 @@ class TraceBench {
         arrays_(scene_arrays(scene)),
         has_wide_(can_trace_wide(device.trace_options(options))),
         primary_(rays_through(make_film(scene, options.camera, options.width, options.height, 1))),
-        tracing_(device.device, tree(options, arrays_.triangles).nodes, arrays_.triangles,
+        tracing_(device.device, built(options, arrays_.triangles).nodes, arrays_.triangles,
                  static_cast<std::uint32_t>(primary_.size()), has_wide_) {}
 
   // As --tree names them.
@@ -88,7 +88,7 @@ class TraceBench {
   }
 
  private:
-  static Bvh tree(const Options& options, std::span<const Triangle> triangles) {
+  static Bvh built(const Options& options, std::span<const Triangle> triangles) {
     return find_cpu_builder(find_device_builder(options.builder)->cpu_builder)
         .build(triangles, {options.radius, morton_bits_for(options, triangles)});
   }

@@ -23,7 +23,9 @@ const uint PLOC_MERGE_SUMS = 2;  // scanned together: clusters that retire, pair
 const uint PLOC_RETIRES = 0xffffffff;
 const uint PLOC_TILE_SCAN_GROUP = 64;
 
-const uint PLOC_FINISH_CLUSTERS = 896;  // from here on one subgroup does all remaining rounds
+// From here on one subgroup does all remaining rounds: as many as 32 KiB of shared memory hold, with 36 bytes
+// each, in multiples of 64.
+const uint PLOC_FINISH_CLUSTERS = 896;
 
 // One round, written by the last tile of the round before it. Zero for a round that is not needed.
 struct PlocRound {
