@@ -133,6 +133,10 @@ TEST_F(DeviceLookback, ReversedTilesCannotDoWithoutFallbackOnFewThreads) {
 // A tile that is merely late, because its thread was interrupted, costs a fallback too.
 constexpr std::uint32_t late_tiles = 8;
 
+// For an error every tile is silent: tiles that are not share their fallbacks, so that by two threads abreast
+// none may need too many.
+constexpr std::uint32_t every_tile = (1u << (32 - LOOKBACK_SILENT_SHIFT)) - 1;
+
 TEST_F(DeviceLookback, AlmostAsManySilentTilesOfAMergeAsFallbacksAreStillRight) {
   const std::vector<Triangle> triangles = triangles_of(70, PLOC_MERGE_TILE);
   const BuildOptions options = stressed(silent(64 - late_tiles));
@@ -141,10 +145,10 @@ TEST_F(DeviceLookback, AlmostAsManySilentTilesOfAMergeAsFallbacksAreStillRight) 
             tree_hash(build_ploc(triangles, {2, 30}).nodes));
 }
 
-TEST_F(DeviceLookback, OneMoreSilentTileOfAMergeIsAnErrorByName) {
+TEST_F(DeviceLookback, MoreSilentTilesOfAMergeThanFallbacksAreAnErrorByName) {
   const std::vector<Triangle> triangles = triangles_of(70, PLOC_MERGE_TILE);
-  expect_error(triangles, stressed(silent(65)), "ploc_merge");
-  EXPECT_EQ(state_after(triangles, stressed(silent(65))).error_word & ERROR_SORT_LOOKBACK, 0u);
+  expect_error(triangles, stressed(silent(every_tile)), "ploc_merge");
+  EXPECT_EQ(state_after(triangles, stressed(silent(every_tile))).error_word & ERROR_SORT_LOOKBACK, 0u);
 }
 
 TEST_F(DeviceLookback, AlmostAsManySilentTilesOfASortAsFallbacksAreStillRightAndMoreAreAnErrorByName) {
@@ -154,7 +158,7 @@ TEST_F(DeviceLookback, AlmostAsManySilentTilesOfASortAsFallbacksAreStillRightAnd
   options.lookback_max_fallbacks = most;
   EXPECT_EQ(tree_hash(build_on(test_device(), triangles, options).nodes),
             tree_hash(build_ploc(triangles, {2, 30}).nodes));
-  options.lookback_stress = silent(most + 1);
+  options.lookback_stress = silent(every_tile);
   expect_error(triangles, options, "sort_pass");
 }
 
