@@ -4,7 +4,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/morton.h"
+#include "lib/node_words.glsl"
 #include "lib/normalised.glsl"
+#include "lib/subgroup_run.glsl"
 
 layout(local_size_x = MORTON_GROUP) in;
 layout(push_constant, scalar) uniform Push { MortonCodesArgs args; };
@@ -47,10 +49,9 @@ bool is_empty(Aabb box) { return box.box_min.x > box.box_max.x; }
 
 void main() {
   Grid grid = scene_grid(args.state.at[0], 10u * args.key_words);
-  uint first = gl_WorkGroupID.x * MORTON_TILE + gl_LocalInvocationIndex;
-  uint last = min((gl_WorkGroupID.x + 1u) * MORTON_TILE, args.triangle_count);
-  [[dont_unroll]] for (uint i = first; i < last; i += MORTON_GROUP) {
-    Aabb box = args.boxes.at[i];
+  Run run = subgroup_run(gl_WorkGroupID.x * MORTON_TILE, MORTON_PER_INVOCATION, args.triangle_count);
+  [[dont_unroll]] for (uint i = run.first; i < run.last; i += LANES) {
+    Aabb box = load_box(args.boxes, i);
     uvec2 key = uvec2(MORTON_INACTIVE);
     if (!is_empty(box)) {
       uvec3 cell = grid_cell(box, grid);

@@ -5,6 +5,8 @@
 #include "interface/bounds.h"
 #include "lib/ordered_float.glsl"
 #include "lib/node_words.glsl"
+#include "lib/subgroup_run.glsl"
+#include "lib/triangle_words.glsl"
 
 layout(local_size_x = PRIMITIVE_BOUNDS_GROUP) in;
 layout(push_constant, scalar) uniform Push { PrimitiveBoundsArgs args; };
@@ -40,10 +42,10 @@ void main() {
 
   uvec3 min_complement = uvec3(0u), box_max = uvec3(0u);
   uint active_count = 0u;
-  [[dont_unroll]] for (uint k = 0u; k < PRIMITIVE_BOUNDS_PER_INVOCATION; ++k) {
-    uint i = gl_WorkGroupID.x * PRIMITIVE_BOUNDS_TILE + k * PRIMITIVE_BOUNDS_GROUP + lane;
-    if (i >= args.triangle_count) break;
-    Triangle t = args.triangles.at[i];
+  Run run =
+      subgroup_run(gl_WorkGroupID.x * PRIMITIVE_BOUNDS_TILE, PRIMITIVE_BOUNDS_PER_INVOCATION, args.triangle_count);
+  [[dont_unroll]] for (uint i = run.first; i < run.last; i += LANES) {
+    Triangle t = load_triangle(args.triangles, i);
     Aabb box = Aabb(vec3(uintBitsToFloat(0x7f800000u)), vec3(uintBitsToFloat(0xff800000u)));
     if (finite(t.a) && finite(t.b) && finite(t.c)) {
       box = Aabb(min(min(t.a, t.b), t.c), max(max(t.a, t.b), t.c));

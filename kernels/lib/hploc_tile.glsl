@@ -1,4 +1,5 @@
 // The leaves of a tile, and the greatest nodes of the radix tree that lie within it.
+#include "lib/leaf_nodes.glsl"
 
 // A complete node: the places from first to last, and how many clusters are left of them.
 struct Range {
@@ -27,12 +28,15 @@ void load_tile(uint first, uint last, uint place_count) {
     if (i <= count) levels[i] = level | (level == up_to ? LEFT_END : 0u);
     highest = subgroupBroadcast(up_to, LANES - 1u);
   }
-  // By itself, so that more of these reads are on their way at a time.
-  [[dont_unroll]] for (uint i = lane(); i < count; i += LANES) {
-    uint triangle = args.values.at[first + i];
-    Aabb box = load_box(args.boxes, triangle);
-    cluster_words[i] = words_of(Node(box.box_min, triangle, box.box_max, 0u));
-    list[i] = i;
+  [[dont_unroll]] for (uint at = lane(); at < count; at += LEAVES_AHEAD * LANES) {
+    Node leaves[LEAVES_AHEAD];
+    load_leaves(first + at, last + 1u, leaves);
+    [[unroll]] for (uint k = 0u; k < LEAVES_AHEAD; ++k) {
+      uint i = at + k * LANES;
+      if (i >= count) break;
+      cluster_words[i] = words_of(leaves[k]);
+      list[i] = i;
+    }
   }
   sync();
 }

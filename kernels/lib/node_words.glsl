@@ -1,4 +1,6 @@
 // Nodes and boxes read and written as words of 64 bits: devices that load a vector lane by lane take half as long.
+#ifndef COPPICE_LIB_NODE_WORDS
+#define COPPICE_LIB_NODE_WORDS
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer NodeWordsBuffer {
@@ -34,3 +36,5 @@ void store_box(AabbBuffer boxes, uint i, Aabb box) {
   BoxWordsBuffer(boxes).at[i] =
       u64vec3(packUint2x32(low.xy), packUint2x32(uvec2(low.z, high.x)), packUint2x32(high.yz));
 }
+
+#endif
