@@ -6,23 +6,21 @@
 #extension GL_GOOGLE_include_directive : require
 #include "interface/wide.h"
 
-layout(local_size_x = WIDE_GROUP) in;
+layout(local_size_x_id = DEVICE_SUBGROUP_SIZE_ID) in;
 layout(push_constant, scalar) uniform Push { WideCollapseArgs args; };
 
-#include "lib/wide_groups.glsl"
+#include "lib/subgroup.glsl"
 #include "lib/wide_collapse.glsl"
+#include "lib/wide_groups.glsl"
 
-shared uvec2 subgroup_sums[WIDE_GROUP / 4];  // no device has subgroups of fewer than 4
 shared uint roots[WIDE_TILE * WIDE_CHILDREN];
 shared uint parents[WIDE_TILE * WIDE_CHILDREN];
-
-uint lane() { return gl_SubgroupID * gl_SubgroupSize + gl_SubgroupInvocationID; }
 
 // This invocation's part of the sum over all tiles of the level before this one.
 uint part_of_sum_before(WideLevel level, uint tile) {
   uint sum = 0u, block = tile / WIDE_BLOCK;
-  [[dont_unroll]] for (uint b = lane(); b < block; b += WIDE_GROUP) sum += args.block_sums.at[level.first_block + b];
-  [[dont_unroll]] for (uint t = block * WIDE_BLOCK + lane(); t < tile; t += WIDE_GROUP)
+  [[dont_unroll]] for (uint b = lane(); b < block; b += LANES) sum += args.block_sums.at[level.first_block + b];
+  [[dont_unroll]] for (uint t = block * WIDE_BLOCK + lane(); t < tile; t += LANES)
     sum += args.tile_sums.at[level.first_tile + t];
   return sum;
 }
@@ -41,25 +39,20 @@ void list_children(uint parent, uint slot) {
 
 // Children before this tile in the level, and in the tile; they are in `roots` and `parents`.
 uvec2 list_tile(WideLevel level, uint tile) {
-  uint index = tile * WIDE_TILE + lane();
-  uint parent = level.first + index;
-  bool present = lane() < WIDE_TILE && index < level.count;
-  uint child_count = present ? args.entries.at[parent].child_count : 0u;
-  uint slot = subgroupExclusiveAdd(child_count);
-  uvec2 sums = subgroupAdd(uvec2(part_of_sum_before(level, tile), child_count));
-  if (subgroupElect()) subgroup_sums[gl_SubgroupID] = sums;
-  barrier();
-  sums = uvec2(0u);
-  [[dont_unroll]] for (uint s = 0u; s < gl_NumSubgroups; ++s) {
-    if (s == gl_SubgroupID) slot += sums.y;
-    sums += subgroup_sums[s];
+  uint before = subgroupAdd(part_of_sum_before(level, tile)), listed = 0u;
+  uint first = tile * WIDE_TILE, last = min(first + WIDE_TILE, level.count);
+  [[dont_unroll]] for (uint at = first; at < last; at += LANES) {
+    uint parent = level.first + at + lane();
+    uint child_count = at + lane() < last ? args.entries.at[parent].child_count : 0u;
+    uint sums = inclusive_add(child_count), slot = listed + sums - child_count;
+    if (child_count != 0u) {
+      args.entries.at[parent].first_child = level.first + level.count + before + slot;
+      list_children(parent, slot);
+    }
+    listed += subgroupBroadcast(sums, LANES - 1u);
   }
-  if (child_count != 0u) {
-    args.entries.at[parent].first_child = level.first + level.count + sums.x + slot;
-    list_children(parent, slot);
-  }
-  barrier();
-  return sums;
+  sync();
+  return uvec2(before, listed);
 }
 
 void main() {
@@ -72,7 +65,7 @@ void main() {
   uint next_block = level.first_block + (tile_count + WIDE_BLOCK - 1u) / WIDE_BLOCK;
   Node root = args.nodes.at[0];
   Normalisation normalisation = normalisation_of(root.box_min, root.box_max);
-  [[dont_unroll]] for (uint i = lane(); i < sums.y; i += WIDE_GROUP)
+  [[dont_unroll]] for (uint i = lane(); i < sums.y; i += LANES)
     enter(next_first + sums.x + i, roots[i], parents[i], sums.x + i, next_tile, next_block, normalisation);
   if (tile + 1u != tile_count || lane() != 0u) return;
   uint count = sums.x + sums.y;

@@ -61,19 +61,28 @@ uint find_place(uint entry) {
   return place;
 }
 
-// Writes a child word; `wide_child` is the entry of the next child that is a wide node. Returns the planes as two words:
-// min x, y, z, max x and max y, z.
-uvec2 place_child(uint place, uint slot, uint child, Grid grid, inout uint wide_child) {
-  uint word = WIDE_EMPTY;
+// Writes the child words. All children are read at once, as each waits for memory; their boxes come with them.
+void place_children(uint index, uint place, uint wide_child) {
+  uint children[WIDE_CHILDREN], words[WIDE_CHILDREN];
+  [[unroll]] for (uint slot = 0u; slot < WIDE_CHILDREN; ++slot)
+    children[slot] = args.children.at[index * WIDE_CHILDREN + slot];
+  [[unroll]] for (uint slot = 0u; slot < WIDE_CHILDREN; ++slot) {
+    bool is_node = (children[slot] & WIDE_LEAF) == 0u, is_empty = children[slot] == WIDE_EMPTY;
+    uint below = args.nodes.at[is_empty ? 0u : children[slot] & ~WIDE_LEAF].child;
+    words[slot] = is_node ? place + args.offsets.at[wide_child] : is_empty ? WIDE_EMPTY : WIDE_LEAF | below;
+    wide_child += is_node ? 1u : 0u;
+  }
+  [[unroll]] for (uint slot = 0u; slot < WIDE_CHILDREN; ++slot) args.wide_nodes.at[place].child[slot] = words[slot];
+}
+
+// The planes of a child as two words: min x, y, z, max x and max y, z.
+uvec2 planes_of(uint child, Grid grid) {
   uvec3 low = uvec3(255u), high = uvec3(0u);
   if (child != WIDE_EMPTY) {
     Node node = load_node(args.nodes, child & ~WIDE_LEAF);
     low = planes_below(grid, node.box_min);
     high = planes_above(grid, node.box_max);
-    word = WIDE_LEAF | node.child;
-    if ((child & WIDE_LEAF) == 0u) word = place + args.offsets.at[wide_child++];
   }
-  args.wide_nodes.at[place].child[slot] = word;
   return uvec2(low.x | low.y << 8 | low.z << 16 | high.x << 24, high.y | high.z << 8);
 }
 
@@ -82,16 +91,15 @@ void main() {
   if (index >= args.counts.at[0].node_count) return;
   WideEntry entry = args.entries.at[index];
   uint place = find_place(index);
+  place_children(index, place, entry.first_child);
   Node root = load_node(args.nodes, entry.root);
   uvec3 exponents = cell_exponents(root);
   Grid grid = Grid(root.box_min, cells_of(exponents));
   args.wide_nodes.at[place].origin = grid.origin;
   args.wide_nodes.at[place].exponents = exponents.x | exponents.y << 8 | exponents.z << 16;
-  uint wide_child = entry.first_child;
   [[dont_unroll]] for (uint pair = 0u; pair < WIDE_CHILDREN / 2u; ++pair) {
-    uint slot = 2u * pair, list = index * WIDE_CHILDREN + slot;
-    uvec2 even = place_child(place, slot, args.children.at[list], grid, wide_child);
-    uvec2 odd = place_child(place, slot + 1u, args.children.at[list + 1u], grid, wide_child);
+    uint list = index * WIDE_CHILDREN + 2u * pair;
+    uvec2 even = planes_of(args.children.at[list], grid), odd = planes_of(args.children.at[list + 1u], grid);
     args.wide_nodes.at[place].planes[3u * pair] = even.x;
     args.wide_nodes.at[place].planes[3u * pair + 1u] = even.y | odd.x << 16;
     args.wide_nodes.at[place].planes[3u * pair + 2u] = odd.x >> 16 | odd.y << 16;
