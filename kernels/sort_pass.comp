@@ -52,8 +52,8 @@ void scatter(uint tile) {
   uvec2 run = run_of(tile);
   [[dont_unroll]] for (uint first = run.x; first < run.y; first += STRIDE) {
     uint i = first + lane;
-    uint place = take_place(i < run.y ? digit_of(i) : SORT_DIGITS);
-    if (i < run.y) {
+    uint place = take_place(i < args.count ? digit_of(i) : SORT_DIGITS);
+    if (i < args.count) {
       for (uint word = 0u; word < args.key_words; ++word)
         args.keys_out.at[place * args.key_words + word] = args.keys_in.at[i * args.key_words + word];
       if (HAS_VALUES) args.values_out.at[place] = args.values_in.at[i];

@@ -89,14 +89,6 @@ TEST_F(DeviceTree, WithoutPollsEveryTileFallsBackToTheSameTree) {
   EXPECT_EQ(tree_hash(polled.nodes), tree_hash(unpolled.nodes));
 }
 
-TEST_F(DeviceTree, ThroughStagingBuffersTheSameTree) {
-  const std::vector<Triangle> triangles = random_triangles(30000, 8);
-  Device staging({"", true, true});
-  const BuiltTree staged = build_on(staging, triangles, {});
-  EXPECT_EQ(tree_hash(staged.nodes), tree_hash(build_on(test_device(), triangles, {}).nodes));
-  for (const std::string& message : staging.take_validation_messages()) ADD_FAILURE() << message;
-}
-
 TEST_F(DeviceTree, InSeveralBlocksOfMemoryTheSameTree) {
   const std::vector<Triangle> triangles = random_triangles(10000, 9);
   Layout layout(1 << 20);

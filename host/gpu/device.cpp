@@ -163,8 +163,9 @@ DeviceProperties describe(const VulkanContext& context, std::uint32_t timestamp_
       std::min<std::uint64_t>(chain.get<vk::PhysicalDeviceVulkan11Properties>().maxMemoryAllocationSize,
                               chain.get<vk::PhysicalDeviceVulkan13Properties>().maxBufferSize);
   properties.timestamp_period_ns = timestamp_bits ? core.limits.timestampPeriod : 0.0;
-  properties.shared_memory = !context.force_staging && (properties.type == DeviceType::cpu ||
-                                                        properties.type == DeviceType::integrated);
+  properties.shared_memory = !context.like_a_gpu && (properties.type == DeviceType::cpu ||
+                                                     properties.type == DeviceType::integrated);
+  properties.lanes_in_step = !context.like_a_gpu && properties.type == DeviceType::cpu;
   properties.loop_turn_limit = known_loop_limit(driver);
   return properties;
 }
@@ -224,7 +225,7 @@ std::vector<DeviceListing> list_devices() {
 
 Device::Device(const DeviceOptions& options) : context_(std::make_unique<VulkanContext>()) {
   VulkanContext& context = *context_;
-  context.force_staging = options.force_staging;
+  context.like_a_gpu = options.like_a_gpu;
   try {
     context.instance = make_instance(context.loader, options.validate);
     if (options.validate) {

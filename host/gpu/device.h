@@ -31,9 +31,11 @@ struct DeviceListing {
 std::vector<DeviceListing> list_devices();
 
 struct DeviceOptions {
-  std::string select;          // part of a name or an index; empty: discrete before integrated before CPU
-  bool validate = false;       // validation layers, synchronization validation included
-  bool force_staging = false;  // copy through staging buffers even where memory is shared (for tests)
+  std::string select;     // part of a name or an index; empty: discrete before integrated before CPU
+  bool validate = false;  // validation layers, synchronization validation included
+  // Nothing that only CPU devices allow, for tests: copies go through staging buffers, and the invocations of
+  // a subgroup wait for each other.
+  bool like_a_gpu = false;
   std::filesystem::path pipeline_folder{};  // compiled pipelines are kept here between runs; empty: nowhere
 };
 
@@ -46,6 +48,7 @@ struct DeviceProperties {
   std::uint64_t max_block_bytes;  // largest single allocation
   double timestamp_period_ns;     // 0: no timestamps
   bool shared_memory;             // the host maps the device's memory
+  bool lanes_in_step;             // the invocations of a subgroup are the lanes of one vector
   // Old lavapipe silently ends the loops of an invocation after 65,535 turns in all; 0: no limit known.
   std::uint32_t loop_turn_limit;
 };

@@ -43,7 +43,7 @@ vk::raii::Pipeline make_pipeline(const VulkanContext& context, const Kernel& ker
     constants.push_back(value);
   };
   add(DEVICE_SUBGROUP_SIZE_ID, context.properties.subgroup_size);
-  add(DEVICE_LANES_IN_STEP_ID, context.properties.type == DeviceType::cpu);
+  add(DEVICE_LANES_IN_STEP_ID, context.properties.lanes_in_step);
   const vk::SpecializationInfo specialization(static_cast<std::uint32_t>(entries.size()), entries.data(),
                                               constants.size() * 4, constants.data());
   // Kernels that rank by subgroup need whole ones; the others have no size that subgroups must divide.

@@ -37,7 +37,7 @@ struct VulkanContext {
   std::vector<std::uint8_t> kept_pipelines;  // what the file held; empty: nothing of use
   std::map<PipelineKey, vk::raii::Pipeline> pipelines;
   bool labels = false;  // debug labels can be recorded
-  bool force_staging = false;
+  bool like_a_gpu = false;
 
   // Index of a memory type among `allowed` with all of `flags`; throws DeviceError if there is none.
   std::uint32_t memory_type(std::uint32_t allowed, vk::MemoryPropertyFlags flags) const;

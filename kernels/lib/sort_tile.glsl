@@ -16,11 +16,12 @@ uint digit_of(uint key_index) {
   return bitfieldExtract(word, int((args.pass % SORT_PASSES_PER_WORD) * SORT_DIGIT_BITS), int(SORT_DIGIT_BITS));
 }
 
-// The keys of this invocation's row in a tile: from x to y - 1.
+// The keys of this invocation's row in a tile: from x to y - 1; where there are fewer, up to args.count. All rows go
+// through as many turns, as some drivers take a barrier of a subgroup for one of the workgroup.
 uvec2 run_of(uint tile) {
   uint run = args.tile_keys / ROWS;
   uint first = tile * args.tile_keys + row() * run;
-  return uvec2(first, min(first + run, args.count));
+  return uvec2(first, first + run);
 }
 
 // Between accesses of a subgroup's invocations to its row.
@@ -49,7 +50,7 @@ void count_rows(uint tile) {
   uvec2 run = run_of(tile);
   [[dont_unroll]] for (uint first = run.x; first < run.y; first += STRIDE) {
     uint i = first + first_key;
-    take_place(i < run.y ? digit_of(i) : SORT_DIGITS);
+    take_place(i < args.count ? digit_of(i) : SORT_DIGITS);
   }
   barrier();
 }

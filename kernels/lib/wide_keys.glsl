@@ -37,9 +37,18 @@ void sort_keys(inout uint key[WIDE_CHILDREN]) {
   [[unroll]] for (uint k = 1u; k < 7u; k += 2u) put_in_order(key[k], key[k + 1u]);
 }
 
-void find_keys(GridRay grid, uint node, int limit, out uint key[WIDE_CHILDREN]) {
+// Header and planes of a node.
+struct NodeWords {
+  u64vec4 low, high;
+};
+
+NodeWords load_node_words(uint node) {
   WideWordsBuffer words = WideWordsBuffer(args.wide_nodes);
-  u64vec4 low = words.at[node * 3u], high = words.at[node * 3u + 1u];
+  return NodeWords(words.at[node * 3u], words.at[node * 3u + 1u]);
+}
+
+void find_keys(GridRay grid, NodeWords words, int limit, out uint key[WIDE_CHILDREN]) {
+  u64vec4 low = words.low, high = words.high;
   uvec2 origin_xy = unpackUint2x32(low.x), origin_z = unpackUint2x32(low.y);
   uint e = origin_z.y;
   vec3 cell = uintBitsToFloat(uvec3(e << 23, e << 15, e << 7) & 0x7f800000u);

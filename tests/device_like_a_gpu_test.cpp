@@ -1,0 +1,87 @@
+// What only GPUs run, run here: copies through staging buffers, and kernels in whose subgroups the
+// invocations wait for each other. Builders and tracers give what they give without.
+#include <gtest/gtest.h>
+
+#include "analysis/compare.h"
+#include "analysis/tree_hash.h"
+#include "apps/frame.h"
+#include "pipeline/ray_tracing.h"
+#include "scene/hard_cases.h"
+#include "support/device_run.h"
+
+namespace coppice {
+namespace {
+
+class LikeAGpu : public DeviceTest {
+ protected:
+  void TearDown() override {
+    DeviceTest::TearDown();
+    for (const std::string& message : device().take_validation_messages()) ADD_FAILURE() << message;
+  }
+
+  static Device& device() {
+    static Device device({"", true, true});
+    return device;
+  }
+
+  static void expect_same_tree(std::span<const Triangle> triangles, const BuildOptions& options,
+                               const std::string& what) {
+    const auto hash_on = [&](Device& on) { return tree_hash(build_on(on, triangles, options).nodes); };
+    EXPECT_EQ(hash_on(device()), hash_on(test_device())) << what;
+  }
+};
+
+TEST_F(LikeAGpu, IsNoCpuDeviceToTheKernels) {
+  EXPECT_FALSE(device().properties().lanes_in_step);
+  EXPECT_FALSE(device().properties().shared_memory);
+}
+
+TEST_F(LikeAGpu, SameTreesByEverySort) {
+  const std::vector<Triangle> triangles = random_triangles(100000, 8);
+  for (const std::uint32_t bits : {30u, 60u}) {
+    for (const std::uint32_t sort :
+         {SORT_SCAN, SORT_SCAN_8, SORT_SCAN_11, SORT_ONESWEEP_RUNS, SORT_ONESWEEP_MATCH}) {
+      BuildOptions options;
+      options.morton_bits = bits;
+      options.variants.sort = sort;
+      expect_same_tree(triangles, options,
+                       to_string(options.variants) + ", " + std::to_string(bits) + " bits");
+    }
+  }
+}
+
+TEST_F(LikeAGpu, SameTreesByEveryBuilder) {
+  for (const char* name : {"planar-grid", "coincident-and-random", "nested"}) {
+    const auto triangles = scene_arrays(find_hard_case(name)->make(5000, 1)).triangles;
+    for (const DeviceBuilder builder : {DeviceBuilder::ploc, DeviceBuilder::hploc, DeviceBuilder::lbvh}) {
+      for (const bool lookback : {true, false}) {
+        BuildOptions options;
+        options.builder = builder;
+        options.lookback = lookback;
+        expect_same_tree(triangles, options, name);
+      }
+    }
+  }
+}
+
+TEST_F(LikeAGpu, SameHitsThroughEveryTree) {
+  const std::vector<Triangle> triangles = random_triangles(20000, 3, 0.2f);
+  const std::vector<Node> nodes = build_on(test_device(), triangles, {}).nodes;
+  std::vector<Ray> rays;
+  for (const Triangle& t : random_triangles(5000, 4, 2.0f)) rays.push_back({t.a, 0, t.b - t.a, 1e9f});
+  const auto count = static_cast<std::uint32_t>(rays.size());
+  RayTracing here(test_device(), nodes, triangles, count, true),
+      there(device(), nodes, triangles, count, true);
+  TraceOptions options = test_trace_options(1, 1);
+  const TracedRays expected = here.on_device(rays, options);
+  EXPECT_GT(expected.hit_count, 1000u);
+  for (const auto& [wide, packets] : {std::pair{false, false}, {true, true}, {true, false}}) {
+    options.wide = wide;
+    options.packets = packets;
+    EXPECT_EQ(compare_hits(there.on_device(rays, options).hits, expected.hits).count, 0u)
+        << "wide " << wide << ", packets " << packets;
+  }
+}
+
+}  // namespace
+}  // namespace coppice
