@@ -6,7 +6,7 @@ INTERFACE_BEGIN
 const uint CAMERA_RAYS_GROUP = 64;
 const uint TRACE_GROUP = 64;
 const uint TRACE_PACKET = 64;  // rays that trace_wide takes through the tree together
-const uint TRACE_BLOCK = 128;   // rays of a subgroup of trace_wide_single
+const uint TRACE_BLOCK = 128;  // rays of a subgroup of trace_wide_single
 const uint BOUNCE_RAYS_GROUP = 64;
 const uint SHADE_GROUP = 64;
 const uint RESOLVE_GROUP = 64;
