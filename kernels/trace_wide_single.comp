@@ -122,7 +122,7 @@ void visit_node(inout Walk w, NodeWords words, uint k) {
 uint step_walks() {
   [[unroll]] for (uint k = 0u; k < RAYS; ++k)
     if (walks[k].next == NEXT_CHILD) take_child(walks[k], k);
-  NodeWords words[RAYS];
+  NodeWords words[RAYS];  // of node 0 for rays that are at none; without a tree that is what follows the slot
   [[unroll]] for (uint k = 0u; k < RAYS; ++k)
     words[k] = load_node_words(is_at_node(walks[k]) ? walks[k].next : 0u);
   uint walking = 0u;

@@ -1,5 +1,6 @@
-// What only GPUs run, run here: copies through staging buffers, and kernels in whose subgroups the
-// invocations wait for each other. Builders and tracers give what they give without.
+// What only GPUs run, run on CPU devices: copies through staging buffers, and kernels in whose subgroups the
+// invocations wait for each other. Builders and tracers give what they give without. (On a GPU both devices
+// are the same.)
 #include <gtest/gtest.h>
 
 #include "analysis/compare.h"
@@ -31,7 +32,7 @@ class LikeAGpu : public DeviceTest {
   }
 };
 
-TEST_F(LikeAGpu, IsNoCpuDeviceToTheKernels) {
+TEST_F(LikeAGpu, NeitherLanesInStepNorSharedMemory) {
   EXPECT_FALSE(device().properties().lanes_in_step);
   EXPECT_FALSE(device().properties().shared_memory);
 }
@@ -58,7 +59,9 @@ TEST_F(LikeAGpu, SameTreesByEveryBuilder) {
         BuildOptions options;
         options.builder = builder;
         options.lookback = lookback;
-        expect_same_tree(triangles, options, name);
+        expect_same_tree(triangles, options,
+                         name + (", builder " + std::to_string(static_cast<int>(builder))) +
+                             (lookback ? "" : ", without lookback"));
       }
     }
   }
@@ -78,7 +81,9 @@ TEST_F(LikeAGpu, SameHitsThroughEveryTree) {
   for (const auto& [wide, packets] : {std::pair{false, false}, {true, true}, {true, false}}) {
     options.wide = wide;
     options.packets = packets;
-    EXPECT_EQ(compare_hits(there.on_device(rays, options).hits, expected.hits).count, 0u)
+    const TracedRays traced = there.on_device(rays, options);
+    EXPECT_EQ(traced.error_word, 0u);
+    EXPECT_EQ(compare_hits(traced.hits, expected.hits).count, 0u)
         << "wide " << wide << ", packets " << packets;
   }
 }

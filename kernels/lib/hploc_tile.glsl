@@ -33,9 +33,10 @@ void load_tile(uint first, uint last, uint place_count) {
     load_leaves(first + at, last + 1u, leaves);
     [[unroll]] for (uint k = 0u; k < LEAVES_AHEAD; ++k) {
       uint i = at + k * LANES;
-      if (i >= count) break;
-      cluster_words[i] = words_of(leaves[k]);
-      list[i] = i;
+      if (i < count) {
+        cluster_words[i] = words_of(leaves[k]);
+        list[i] = i;
+      }
     }
   }
   sync();

@@ -16,12 +16,12 @@ uint digit_of(uint key_index) {
   return bitfieldExtract(word, int((args.pass % SORT_PASSES_PER_WORD) * SORT_DIGIT_BITS), int(SORT_DIGIT_BITS));
 }
 
-// The keys of this invocation's row in a tile: from x to y - 1; where there are fewer, up to args.count. All rows go
-// through as many turns, as some drivers take a barrier of a subgroup for one of the workgroup.
+// The keys of this invocation's row in a tile: from x to y - 1, as far as they are below args.count. All rows go through
+// as many turns as the first, since some drivers take a barrier of a subgroup for one of the workgroup.
 uvec2 run_of(uint tile) {
-  uint run = args.tile_keys / ROWS;
-  uint first = tile * args.tile_keys + row() * run;
-  return uvec2(first, first + run);
+  uint tile_first = tile * args.tile_keys, run = args.tile_keys / ROWS;
+  uint first = tile_first + row() * run;
+  return uvec2(first, first + min(run, args.count - tile_first));
 }
 
 // Between accesses of a subgroup's invocations to its row.
