@@ -9,7 +9,7 @@
 layout(local_size_x = RESOLVE_GROUP) in;
 layout(push_constant, scalar) uniform Push { ResolveArgs args; };
 
-// A guess that is at most one off, whatever the device's pow; thresholds decide.
+// A guess that is at most one off, whatever the device's pow; thresholds decide. The code of NaN is 0.
 uint srgb_code(float linear) {
   float x = lesser(greater(linear, 0.0), 1.0);
   float encoded = x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1.0 / 2.4) - 0.055;

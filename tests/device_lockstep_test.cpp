@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "apps/frame.h"
 #include "scene/hard_cases.h"
@@ -137,6 +138,33 @@ TEST_F(Lockstep, WholeFrame) {
                              << "]";
     EXPECT_GT(executor.cpu().read(trace.counters)[0].hits.x, 0u);
   }
+}
+
+// A scene may overflow, and its file may hold anything; the twin and every device show the same for it.
+TEST_F(Lockstep, ColoursOutsideOfAPicture) {
+  const float infinity = std::numeric_limits<float>::infinity();
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<vec3> radiance = {
+      {nan, 0.05f, 1}, {0.5f, -nan, nan}, {infinity, -infinity, 2}, {-1, -0.0f, 0.0f}, {1e-30f, 1, 3e38f}};
+  const auto count = static_cast<std::uint32_t>(radiance.size());
+  Layout layout(test_device().properties().max_block_bytes);
+  const TracePlan trace = plan_trace(layout, plan_tree(layout, 1, 1), 1, test_trace_options(count, 1));
+  LockstepExecutor executor(test_device(), layout);
+  const Film film{{}, count, {}, 1, {}, 1, {}, 0};
+  const auto thresholds = srgb_thresholds();
+  executor.upload(trace.film, std::span<const Film>(&film, 1));
+  executor.upload(trace.srgb_thresholds, std::span<const uint>(thresholds));
+  executor.upload(trace.radiance, std::span<const vec3>(radiance));
+  const auto difference = executor.run([&](Chain& chain) {
+    chain.run(stages::resolve,
+              {chain.at(trace.film), chain.at(trace.radiance), chain.at(trace.srgb_thresholds),
+               chain.at(trace.image), 0, count},
+              uvec3(1));
+  });
+  EXPECT_FALSE(difference) << "pixel " << difference->index << "\ncpu " << difference->cpu << "\ngpu "
+                           << difference->gpu;
+  const std::vector<uint> expected = {0xffff3f00, 0xff0000bc, 0xffff00ff, 0xff000000, 0xffffff00};
+  EXPECT_EQ(executor.gpu().read(trace.image), expected);
 }
 
 // --- Planted faults: a twin that does its work and one thing wrong.

@@ -13,7 +13,7 @@ struct SceneArrays {
   std::vector<Triangle> triangles;  // denormal coordinates and -0 as +0: what every device computes alike
   std::vector<uint> material_index;
   std::vector<SurfaceMaterial> materials;
-  Lighting lighting;
+  Lighting lighting = {};
 };
 
 SceneArrays scene_arrays(const Scene& scene);

@@ -9,9 +9,10 @@ namespace coppice::twins {
 void resolve(const ResolveArgs& args) {
   const Film& film = args.film[0];
   const uint* const thresholds = &args.srgb_thresholds[0];
+  // The code of NaN is 0.
   const auto srgb_code = [&](float linear) {
     const auto above = std::upper_bound(thresholds + 1, thresholds + 256, linear, [](float value, uint bits) {
-      return value < std::bit_cast<float>(bits);
+      return !(value >= std::bit_cast<float>(bits));
     });
     return static_cast<uint>(above - thresholds - 1);
   };
