@@ -285,5 +285,17 @@ TEST_F(LoadObj, CutsExponentsOfManyDigitsButNotNames) {
   EXPECT_TRUE(scene.warnings.empty());
 }
 
+TEST_F(LoadObj, CutsExponentsOfManyDigitsWhateverStandsAboutThem) {
+  write("m.mtl",
+        "newmtl a 1e1234567890\nKd 1e-12345678900.5e9876543210 2 3\nKs newmtl 1e-1234567890 4\nNs 5\n");
+  const Scene scene = load("mtllib m.mtl\n" + TRIANGLE + "usemtl a 1e1234567890\nf 1 2 3\n");
+  ASSERT_EQ(scene.materials.size(), 2u);
+  EXPECT_EQ(scene.materials[1].name, "a 1e1234567890");
+  EXPECT_EQ(scene.materials[1].diffuse, glm::vec3(0, 2, 3));
+  EXPECT_EQ(scene.materials[1].specular, glm::vec3(0, 0, 4));
+  EXPECT_EQ(scene.materials[1].shininess, 5);
+  EXPECT_TRUE(scene.warnings.empty());
+}
+
 }  // namespace
 }  // namespace coppice

@@ -35,22 +35,25 @@ Material to_material(const tinyobj::material_t& mtl) {
   return material;
 }
 
-// tinyobjloader overflows an int on exponents of ten digits. Eight are far beyond what a float holds.
+// tinyobjloader overflows an int on exponents of ten digits. Eight are far beyond what a float holds. The
+// rest of such a word goes too, as tinyobjloader passes over what follows a number. Lines that name a
+// material stay.
 void shorten_exponents(std::string& text) {
   constexpr std::size_t kept = 8;
   constexpr const char* blanks = " \t\r\n";
-  std::string_view word;
-  for (std::size_t begin = text.find_first_not_of(blanks); begin < text.size();) {
-    const std::size_t end = std::min(text.find_first_of(blanks, begin), text.size());
-    const bool is_name = word == "newmtl";
-    word = std::string_view(text).substr(begin, end - begin);
+  bool names_material = false;
+  std::size_t end = 0;
+  for (std::size_t begin; (begin = text.find_first_not_of(blanks, end)) < text.size();) {
+    const std::string_view gap = std::string_view(text).substr(end, begin - end);
+    const bool begins_line = end == 0 || gap.find_first_of("\r\n") != gap.npos;
+    end = std::min(text.find_first_of(blanks, begin), text.size());
+    const std::string_view word = std::string_view(text).substr(begin, end - begin);
+    if (begins_line) names_material = word == "newmtl";
     const std::size_t e = word.find_first_not_of("+-.0123456789");
-    if (!is_name && e > 0 && e < word.size() && (word[e] == 'e' || word[e] == 'E')) {
-      const std::size_t first = std::min(word.find_first_not_of("+-0", e + 1), word.size());
-      const std::size_t last = std::min(word.find_first_not_of("0123456789", first), word.size());
-      for (std::size_t i = first + kept; i < last; ++i) text[begin + i] = ' ';
-    }
-    begin = text.find_first_not_of(blanks, end);
+    if (names_material || e == 0 || e >= word.size() || (word[e] != 'e' && word[e] != 'E')) continue;
+    const std::size_t first = std::min(word.find_first_not_of("+-0", e + 1), word.size());
+    const std::size_t last = std::min(word.find_first_not_of("0123456789", first), word.size());
+    if (last - first > kept) std::fill(text.begin() + begin + first + kept, text.begin() + end, ' ');
   }
 }
 
