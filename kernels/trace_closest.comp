@@ -99,7 +99,6 @@ void main() {
       Node root = args.nodes.at[0];
       Aabb box = Aabb(root.box_min, root.box_max);
       approach_scene(box, ray);
-      if (TRACE_BOX_TEST == BOX_ROBUST) widen_slabs(box, ray);
       Hit hit = prepared_hit(ray, so_far);
       steps = trace(ray, hit);
       keep_given(ray, given, hit, so_far);

@@ -43,11 +43,11 @@ float farthest_hit() {
 }
 
 // The children that the bundle meets, nearest first.
-uint list_met(WideChildren children, RayBundle bundle, float farthest) {
+uint list_met(WideChildren children, RayBundle bundle, float reach, float farthest) {
   uint key[SLOTS];
   [[unroll]] for (uint slot = 0u; slot < SLOTS; ++slot) {
     float enter;
-    bool met = bundle_meets_box(bundle, children.box_min[slot], children.box_max[slot], farthest, enter);
+    bool met = bundle_meets_box(bundle, children.box_min[slot], children.box_max[slot], reach, farthest, enter);
     met = met && children.word[slot] != WIDE_EMPTY;
     key[slot] = met ? (floatBitsToUint(enter) & ~(WIDE_CHILDREN - 1u)) | held_child(slot) : 0xffffffffu;
   }
@@ -66,11 +66,11 @@ uint list_met(WideChildren children, RayBundle bundle, float farthest) {
 }
 
 // Bit r: the r-th ray of some invocation meets the box.
-uint meet_box(vec3 box_min, vec3 box_max) {
+uint meet_box(vec3 box_min, vec3 box_max, float reach) {
   uint meeting = 0u;
   [[unroll]] for (uint r = 0u; r < RAYS; ++r) {
     float enter = rays[r].t_min;
-    if (intersect_box(rays[r], box_min, box_max, hits[r].t, enter)) meeting |= 1u << r;
+    if (intersect_box_within(rays[r], box_min, box_max, reach, hits[r].t, enter)) meeting |= 1u << r;
   }
   return packet_or(meeting);
 }
@@ -99,14 +99,15 @@ Triangle read_triangle(uint triangle) {
 
 // Tests the triangles among the children, and lists the nodes among them that a ray meets, nearest first.
 uint visit(WideChildren children, RayBundle bundle, inout float farthest) {
-  uint met = list_met(children, bundle, farthest);
+  precise float reach = bundle_reach(bundle, children.origin) + children.size;
+  uint met = list_met(children, bundle, reach, farthest);
   uint list = 0u, end = 0u;
   [[dont_unroll]] while (met != 0u) {
     ++turns;
     uint child = met & (WIDE_CHILDREN - 1u);
     met >>= 4;
     uint word = of_child(children.word, child);
-    uint meeting = meet_box(of_child(children.box_min, child), of_child(children.box_max, child));
+    uint meeting = meet_box(of_child(children.box_min, child), of_child(children.box_max, child), reach);
     if (meeting != 0u) {
       if (word >= WIDE_LEAF) {
         uint index = word & ~WIDE_LEAF;
@@ -169,7 +170,6 @@ void prepare(uint r, Aabb scene, inout RayBundle bundle) {
   sound = sound && prepare_ray(given, rays[r]);
   if (sound) {
     approach_scene(scene, rays[r]);
-    widen_slabs(scene, rays[r]);
     hits[r] = prepared_hit(rays[r], so_far);
     add_to_bundle(rays[r], bundle);
   } else {

@@ -89,15 +89,24 @@ void meet_watertight(const TraceRay& ray, const Triangle& triangle, uint index, 
 
 bool ray_meets_box(const TraceRay& ray, const vec3& box_min, const vec3& box_max, uint box_test, float t_max,
                    float& enter) {
+  float reach = 0;
+  if (box_test == BOX_ROBUST) {
+    for (int axis = 0; axis < 3; ++axis)
+      reach = std::max(
+          {reach, std::fabs(box_min[axis] - ray.origin[axis]), std::fabs(box_max[axis] - ray.origin[axis])});
+  }
+  return ray_meets_box_within(ray, box_min, box_max, reach, t_max, enter);
+}
+
+bool ray_meets_box_within(const TraceRay& ray, const vec3& box_min, const vec3& box_max, float reach,
+                          float t_max, float& enter) {
   enter = ray.t_min;
   for (int axis = 0; axis < 3; ++axis) {
     float near = (box_min[axis] - ray.origin[axis]) * ray.inverse[axis];
     float far = (box_max[axis] - ray.origin[axis]) * ray.inverse[axis];
     if (ray.inverse[axis] < 0) std::swap(near, far);
-    if (box_test == BOX_ROBUST) {
-      near -= ray.slab_pad[axis];
-      far += ray.slab_pad[axis];
-    }
+    near -= ray.room[axis] * reach;
+    far += ray.room[axis] * reach;
     if (near > enter) enter = near;  // false for the NaN of a ray in the slab's plane
     if (far < t_max) t_max = far;
   }

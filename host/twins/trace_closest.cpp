@@ -60,7 +60,6 @@ void trace_closest(const TraceClosestArgs& args) {
     if (!empty && ray.is_sound) {
       const Node& root = args.nodes[0];
       ray.approach(root.box_min, root.box_max);
-      ray.widen_slabs(root.box_min, root.box_max);
       Hit hit = ray.prepared(args.hits[i]);
       count_into(counters.steps, trace(args, ray, hit));
       ray.keep(hit, args.hits[i]);

@@ -14,7 +14,7 @@ namespace {
 constexpr float negligible_component = 0x1p-64f;
 constexpr float far_origin = 16;  // in scene sizes
 constexpr float farthest_move = 0x1p100f;
-constexpr float slab_room = 0x1p-20f;
+constexpr float box_room = 24 * 0x1p-24f;
 
 float largest(const vec3& v) { return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}); }
 
@@ -39,6 +39,7 @@ TraceRay::TraceRay(const Ray& given) : origin(given.origin), given_(given) {
     direction[k] = counts ? component : std::copysign(0.0f, component);
     inverse[k] = direction[k] == 0 ? std::copysign(std::numeric_limits<float>::infinity(), direction[k])
                                    : 1.0f / direction[k];
+    room[k] = direction[k] == 0 ? 0.0f : std::fabs(inverse[k]) * box_room;
   }
   axis = 0;
   for (int k = 1; k < 3; ++k) {
@@ -56,7 +57,7 @@ void TraceRay::approach(const vec3& box_min, const vec3& box_max) {
   }
   if (reach <= far_origin * size) return;
   const float to_centre = (box_min[axis] * 0.5f + box_max[axis] * 0.5f) - origin[axis];
-  const float t = to_centre * stretch * (1.0f - slab_room) - 2.0f * size;
+  const float t = to_centre * stretch * (1.0f - 0x1p-20f) - 2.0f * size;
   if (!(t > 0 && t < farthest_move)) return;
   for (int k = 0; k < 3; ++k) {
     const Unrounded way = exact_product(direction[k], t);
@@ -65,14 +66,6 @@ void TraceRay::approach(const vec3& box_min, const vec3& box_max) {
   }
   t_min = std::max(t_min - t, 0.0f);
   moved_ = t;
-}
-
-void TraceRay::widen_slabs(const vec3& box_min, const vec3& box_max) {
-  const float along = farthest(box_min[axis], box_max[axis], origin[axis]);
-  for (int k = 0; k < 3; ++k) {
-    const float distance = (farthest(box_min[k], box_max[k], origin[k]) + along) * slab_room;
-    slab_pad[k] = direction[k] == 0 ? 0.0f : distance * std::fabs(inverse[k]);
-  }
 }
 
 Hit TraceRay::prepared(const Hit& given) const {

@@ -13,8 +13,6 @@ class TraceRay {
 
   // Moves an origin far outside of the scene's box to just before it.
   void approach(const vec3& box_min, const vec3& box_max);
-  // Room that the robust box test leaves for rounding.
-  void widen_slabs(const vec3& box_min, const vec3& box_max);
 
   Hit prepared(const Hit& given) const;
   // Replaces `so_far`, a hit of the ray as given, by `hit`, one of the prepared ray, unless they are the
@@ -25,7 +23,7 @@ class TraceRay {
   vec3 origin, direction;
   float t_min;
   vec3 inverse;
-  vec3 slab_pad{0};
+  vec3 room{0};    // t by which the robust box test widens slabs, for a corner of the box one unit away
   int axis;        // largest component of the direction
   float shear[2];  // of the two axes that follow `axis` in cyclic order
   float stretch;   // reciprocal of the largest component

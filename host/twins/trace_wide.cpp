@@ -29,6 +29,8 @@ float least_product(float difference, const Interval& inverse) {
   return difference * (difference < 0 ? inverse.high : inverse.low);
 }
 
+uint step_bits(const WideNode& node, int axis) { return (node.exponents >> (8 * axis) & 0xff) << 23; }
+
 // The slab test for all rays of a packet at once.
 class Bundle {
  public:
@@ -36,12 +38,25 @@ class Bundle {
     for (int axis = 0; axis < 3; ++axis) {
       origin_[axis].add(ray.origin[axis]);
       inverse_[axis].add(ray.inverse[axis]);
-      pad_[axis] = std::max(pad_[axis], ray.slab_pad[axis]);
+      room_[axis] = std::max(room_[axis], ray.room[axis]);
     }
     t_min = std::min(t_min, ray.t_min);
   }
 
-  bool meets(const vec3& box_min, const vec3& box_max, float leave, float& enter) const {
+  // A bound of how far the corners of a wide node's children are from all origins.
+  float reach(const WideNode& node) const {
+    float distance = 0;
+    uint largest_step = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      distance = std::max({distance, std::fabs(node.origin[axis] - origin_[axis].low),
+                           std::fabs(node.origin[axis] - origin_[axis].high)});
+      largest_step = std::max(largest_step, step_bits(node, axis));
+    }
+    return distance + std::bit_cast<float>(largest_step) * WIDE_NODE_STEPS;
+  }
+
+  // For a box within `reach` of all origins.
+  bool meets(const vec3& box_min, const vec3& box_max, float reach, float leave, float& enter) const {
     enter = t_min;
     for (int axis = 0; axis < 3; ++axis) {
       const Interval& inverse = inverse_[axis];
@@ -50,8 +65,8 @@ class Bundle {
       const float below = box_min[axis] - origin_[axis].high, above = box_max[axis] - origin_[axis].low;
       const bool backward = inverse.high < 0;
       const float to_near = backward ? above : below, to_far = backward ? below : above;
-      enter = std::max(enter, least_product(to_near, inverse) - pad_[axis]);
-      leave = std::min(leave, -least_product(-to_far, inverse) + pad_[axis]);
+      enter = std::max(enter, least_product(to_near, inverse) - room_[axis] * reach);
+      leave = std::min(leave, -least_product(-to_far, inverse) + room_[axis] * reach);
     }
     return enter <= leave;
   }
@@ -60,7 +75,7 @@ class Bundle {
 
  private:
   Interval origin_[3], inverse_[3];
-  float pad_[3] = {};
+  float room_[3] = {};
 };
 
 struct Box {
@@ -71,7 +86,7 @@ Box child_box(const WideNode& node, uint child) {
   const auto* const bytes = reinterpret_cast<const std::uint8_t*>(node.planes) + 6 * child;
   Box box;
   for (int axis = 0; axis < 3; ++axis) {
-    const float step = std::bit_cast<float>((node.exponents >> (8 * axis) & 0xff) << 23);
+    const float step = std::bit_cast<float>(step_bits(node, axis));
     box.box_min[axis] = node.origin[axis] + static_cast<float>(bytes[axis]) * step;
     box.box_max[axis] = node.origin[axis] + static_cast<float>(bytes[axis + 3]) * step;
   }
@@ -107,10 +122,10 @@ class Packet {
  private:
   float farthest() const { return std::ranges::max_element(hits_, {}, &Hit::t)->t; }
 
-  bool any_meets(const Box& box) const {
+  bool any_meets(const Box& box, float reach) const {
     for (std::size_t i = 0; i < rays_.size(); ++i) {
       float enter;
-      if (ray_meets_box(rays_[i], box.box_min, box.box_max, BOX_ROBUST, hits_[i].t, enter)) return true;
+      if (ray_meets_box_within(rays_[i], box.box_min, box.box_max, reach, hits_[i].t, enter)) return true;
     }
     return false;
   }
@@ -121,16 +136,18 @@ class Packet {
       uint key, child;
     };
     std::vector<Met> met;
+    const float reach = bundle_.reach(node);
     for (uint child = 0; child < WIDE_CHILDREN; ++child) {
       const Box box = child_box(node, child);
       float enter;
-      if (node.child[child] != WIDE_EMPTY && bundle_.meets(box.box_min, box.box_max, farthest(), enter))
+      if (node.child[child] != WIDE_EMPTY &&
+          bundle_.meets(box.box_min, box.box_max, reach, farthest(), enter))
         met.push_back({(std::bit_cast<uint>(enter) & ~(WIDE_CHILDREN - 1)) | child, child});
     }
     std::ranges::sort(met, {}, &Met::key);
     std::vector<uint> nodes;
     for (const Met& next : met) {
-      if (!any_meets(child_box(node, next.child))) continue;
+      if (!any_meets(child_box(node, next.child), reach)) continue;
       const uint word = node.child[next.child], triangle = word & ~WIDE_LEAF;
       if (word < WIDE_LEAF) {
         nodes.push_back(word);
@@ -157,7 +174,6 @@ uint trace_packet(const TraceWideArgs& args, uint first, uint count) {
     if (!ray.is_sound) continue;
     const Node& root = args.nodes[0];
     ray.approach(root.box_min, root.box_max);
-    ray.widen_slabs(root.box_min, root.box_max);
     packet.add(ray, ray.prepared(args.hits[i]));
     indices.push_back(i);
   }

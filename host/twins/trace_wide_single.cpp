@@ -13,12 +13,14 @@ namespace coppice::twins {
 
 namespace {
 
-constexpr float room_for_rounding = 0x1p-18f;
+constexpr float room_by_reach = 0x1p-19f, room_by_origin = 0x1p-23f, room_by_offset = 0x1p-18f;
 constexpr float farthest_reach = 0x1p60f;
 constexpr float most_inverse = 0x1p64f;
-constexpr float share_of_range = 1 - 0x1p-10f;
+constexpr float share_of_range = 1 - 0x1p-7f;
+constexpr int binades = 64;  // below the range
 
-// The distances of one ray to the planes of wide nodes: t plus an offset, so that all are positive.
+// The distances of one ray to the planes of wide nodes: t plus an offset, so that those that matter are
+// positive.
 class Distances {
  public:
   Distances(const TraceRay& ray, const vec3& box_min, const vec3& box_max) : origin_(ray.origin) {
@@ -26,39 +28,55 @@ class Distances {
     for (int axis = 0; axis < 3; ++axis)
       reach[axis] =
           std::max(std::fabs(box_min[axis] - ray.origin[axis]), std::fabs(box_max[axis] - ray.origin[axis]));
-    const float along = reach[ray.axis];
-    const float far_end = along * 1.25f * std::fabs(ray.stretch);
-    const int exponent = far_end < FLT_MIN ? FLT_MIN_EXP - 1 : std::ilogb(far_end) + 1;
-    range_ = std::ldexp(1.0f, std::min(exponent, 125));
-    offset_ = ray.t_min < 0 ? 3 * range_ : range_;
+    const float far_end = reach[ray.axis] * 1.25f * std::fabs(ray.stretch);
+    const int exponent = std::min(far_end < FLT_MIN ? FLT_MIN_EXP - 1 : std::ilogb(far_end) + 1, 125);
+    range_ = std::ldexp(1.0f, exponent);
+    const bool may_be_negative = ray.t_min < 0;
+    offset_ = may_be_negative ? 3 * range_ : 0;
+    base_ = may_be_negative ? 2 * range_ : exponent - binades < FLT_MIN_EXP - 1 ? 0 : range_ * 0x1p-64f;
     const bool meets_all = !(std::max({reach[0], reach[1], reach[2]}) < farthest_reach);
-    first = meets_all ? 0 : std::clamp(ray.t_min, -range_, 2 * range_) + offset_;
+    first = meets_all ? base_ : std::max(std::clamp(ray.t_min, -range_, range_) + offset_, base_);
     for (int axis = 0; axis < 3; ++axis) {
       inverse_[axis] =
           std::isinf(ray.inverse[axis]) ? std::copysign(most_inverse, ray.inverse[axis]) : ray.inverse[axis];
-      const float coordinate = std::max(std::fabs(box_min[axis]), std::fabs(box_max[axis]));
-      pad_[axis] = (reach[axis] + along + coordinate) * room_for_rounding * std::fabs(inverse_[axis]);
+      const float size = std::fabs(inverse_[axis]);
+      room_[axis] = size * room_by_reach;
+      fixed_[axis] = std::fabs(origin_[axis]) * room_by_origin * size + offset_ * room_by_offset;
       if (!meets_all) continue;
-      inverse_[axis] = 0;
-      pad_[axis] = 2 * offset_;
+      inverse_[axis] = room_[axis] = 0;
+      fixed_[axis] = 0x1p126f;
     }
   }
 
   // How far a hit at t is.
-  float of_hit(float t) const { return std::min(t, range_ * share_of_range) + offset_; }
+  float of_hit(float t) const {
+    return std::max(std::clamp(t, -range_, range_ * share_of_range) + offset_, base_);
+  }
+
+  // The distance as far as a list of children keeps it, in 13 bits: seven of the mantissa, and the binade.
+  uint kept_bits(float distance) const {
+    return (std::bit_cast<uint>(distance) - std::bit_cast<uint>(base_)) >> 16 & 0x1fff;
+  }
 
   // Where the ray enters a child's box; false if it misses it up to `limit`.
   bool meet(const WideNode& node, uint child, float limit, float& enter) const {
     const auto* const bytes = reinterpret_cast<const std::uint8_t*>(node.planes) + 6 * child;
+    float cell[3], away = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      cell[axis] = std::bit_cast<float>((node.exponents >> (8 * axis) & 0xff) << 23);
+      away = std::max(away, std::fabs(node.origin[axis] - origin_[axis]));
+    }
+    const float reach = away + std::max({cell[0], cell[1], cell[2]}) * WIDE_NODE_STEPS;
     enter = first;
     float leave = limit;
     for (int axis = 0; axis < 3; ++axis) {
-      const float cell = std::bit_cast<float>((node.exponents >> (8 * axis) & 0xff) << 23);
-      const float scale = cell * inverse_[axis], start = (node.origin[axis] - origin_[axis]) * inverse_[axis];
+      const float scale = cell[axis] * inverse_[axis];
+      const float start = (node.origin[axis] - origin_[axis]) * inverse_[axis];
+      const float pad = room_[axis] * reach;
       const bool backward = inverse_[axis] < 0;
       const std::uint8_t near = bytes[backward ? axis + 3 : axis], far = bytes[backward ? axis : axis + 3];
-      enter = std::max(enter, near * scale + (start - (pad_[axis] - offset_)));
-      leave = std::min(leave, far * scale + (start + (pad_[axis] + offset_)));
+      enter = std::max(enter, near * scale + (start - (pad + (fixed_[axis] - offset_))));
+      leave = std::min(leave, far * scale + (start + (pad + (fixed_[axis] + (offset_ + 2 * base_)))));
     }
     return enter <= leave;
   }
@@ -67,11 +85,8 @@ class Distances {
 
  private:
   vec3 origin_;
-  float inverse_[3], pad_[3], range_, offset_;
+  float inverse_[3], room_[3], fixed_[3], range_, offset_, base_;
 };
-
-// The distance as far as a list of children keeps it: 13 bits of the mantissa, since exponents are the same.
-uint kept_bits(float distance) { return std::bit_cast<uint>(distance) >> 10 & 0x1fff; }
 
 struct Visit {
   uint kept;  // bits of the distance
@@ -86,7 +101,7 @@ uint trace(const TraceWideArgs& args, const TraceRay& ray, Hit& hit) {
   for (std::vector<Visit> stack = {{0, 0}}; !stack.empty();) {
     const Visit visit = stack.back();
     stack.pop_back();
-    if (visit.kept > kept_bits(distances.of_hit(hit.t))) continue;
+    if (visit.kept > distances.kept_bits(distances.of_hit(hit.t))) continue;
     if (visit.word >= WIDE_LEAF) {
       const uint triangle = visit.word & ~WIDE_LEAF;
       ray_meets_triangle(ray, args.triangles[triangle], triangle, TRIANGLE_WATERTIGHT, hit);
@@ -104,7 +119,7 @@ uint trace(const TraceWideArgs& args, const TraceRay& ray, Hit& hit) {
       if (node.child[child] == WIDE_EMPTY || !distances.meet(node, child, distances.of_hit(hit.t), enter))
         continue;
       met.push_back({(std::bit_cast<uint>(enter) & ~(WIDE_CHILDREN - 1)) | child,
-                     {kept_bits(enter), node.child[child]}});
+                     {distances.kept_bits(enter), node.child[child]}});
     }
     std::ranges::sort(met, std::greater(), &Met::key);
     for (const Met& child : met) stack.push_back(child.visit);

@@ -34,6 +34,7 @@ const uint WIDE_BLOCK = 64;  // tiles that are summed together
 
 const uint WIDE_MAX_HEIGHT = 256;     // of the binary tree; so levels of the wide one, at most
 const uint WIDE_LEAST_EXPONENT = 27;  // biased, of a step: 2^-100, so that no plane is denormal
+const float WIDE_NODE_STEPS = 512.0;  // no node has a longer extent, in its longest steps
 
 // A child of height 1 or 2 counts with its area times these, so that few wide nodes have only two or three
 // children.

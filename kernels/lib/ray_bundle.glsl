@@ -5,7 +5,7 @@
 struct RayBundle {
   vec3 origin_low, origin_high;
   vec3 inverse_low, inverse_high;  // of one sign; 0 on an axis that tells nothing
-  vec3 slab_pad;                   // the largest; infinite on such an axis
+  vec3 room;                       // the largest; infinite on such an axis
   float t_min;                     // the least
 };
 
@@ -19,16 +19,16 @@ void add_to_bundle(TraceRay ray, inout RayBundle bundle) {
   bundle.origin_high = greater(bundle.origin_high, ray.origin);
   bundle.inverse_low = lesser(bundle.inverse_low, ray.inverse);
   bundle.inverse_high = greater(bundle.inverse_high, ray.inverse);
-  bundle.slab_pad = greater(bundle.slab_pad, ray.slab_pad);
+  bundle.room = greater(bundle.room, ray.room);
   bundle.t_min = lesser(bundle.t_min, ray.t_min);
 }
 
 // An axis tells something where all rays go the same way along it.
-void bind_axis(inout float low, inout float high, inout float pad) {
+void bind_axis(inout float low, inout float high, inout float room) {
   bool one_way = (low > 0.0 || high < 0.0) && !isinf(low) && !isinf(high);
   low = one_way ? low : 0.0;
   high = one_way ? high : 0.0;
-  pad = one_way ? pad : uintBitsToFloat(0x7f800000u);
+  room = one_way ? room : uintBitsToFloat(0x7f800000u);
 }
 
 // From the bundles of the invocations that of the packet.
@@ -37,10 +37,10 @@ void bind_packet(inout RayBundle bundle) {
   bundle.origin_high = packet_greater(bundle.origin_high);
   bundle.inverse_low = packet_lesser(bundle.inverse_low);
   bundle.inverse_high = packet_greater(bundle.inverse_high);
-  bundle.slab_pad = packet_greater(bundle.slab_pad);
+  bundle.room = packet_greater(bundle.room);
   bundle.t_min = packet_lesser(bundle.t_min);
   [[unroll]] for (uint axis = 0u; axis < 3u; ++axis)
-    bind_axis(bundle.inverse_low[axis], bundle.inverse_high[axis], bundle.slab_pad[axis]);
+    bind_axis(bundle.inverse_low[axis], bundle.inverse_high[axis], bundle.room[axis]);
 }
 
 // The near plane's least t and the far plane's greatest. For rays that go backward the difference to the plane is
@@ -56,14 +56,23 @@ void clip_bundle(float slab_min, float slab_max, float origin_low, float origin_
   if (far < leave) leave = far;
 }
 
-// False only if no ray of the bundle meets the box up to `leave`. `enter` is no later than where the first one does.
-bool bundle_meets_box(RayBundle b, vec3 box_min, vec3 box_max, float leave, out float enter) {
+// At least what lies between the position and the farthest of the origins, in the maximum norm.
+float bundle_reach(RayBundle b, vec3 position) {
+  precise vec3 from_low = position - b.origin_low;
+  precise vec3 from_high = position - b.origin_high;
+  return largest(greater(abs(from_low), abs(from_high)));
+}
+
+// False only if no ray of the bundle meets the box, which is within `reach` of all origins, up to `leave`. `enter` is no
+// later than where the first one does. On an axis that tells nothing the pad is infinite, or NaN if reach is 0.
+bool bundle_meets_box(RayBundle b, vec3 box_min, vec3 box_max, float reach, float leave, out float enter) {
   enter = b.t_min;
-  clip_bundle(box_min.x, box_max.x, b.origin_low.x, b.origin_high.x, b.inverse_low.x, b.inverse_high.x, b.slab_pad.x,
+  precise vec3 pad = b.room * reach;
+  clip_bundle(box_min.x, box_max.x, b.origin_low.x, b.origin_high.x, b.inverse_low.x, b.inverse_high.x, pad.x,
               enter, leave);
-  clip_bundle(box_min.y, box_max.y, b.origin_low.y, b.origin_high.y, b.inverse_low.y, b.inverse_high.y, b.slab_pad.y,
+  clip_bundle(box_min.y, box_max.y, b.origin_low.y, b.origin_high.y, b.inverse_low.y, b.inverse_high.y, pad.y,
               enter, leave);
-  clip_bundle(box_min.z, box_max.z, b.origin_low.z, b.origin_high.z, b.inverse_low.z, b.inverse_high.z, b.slab_pad.z,
+  clip_bundle(box_min.z, box_max.z, b.origin_low.z, b.origin_high.z, b.inverse_low.z, b.inverse_high.z, pad.z,
               enter, leave);
   return enter <= leave;
 }

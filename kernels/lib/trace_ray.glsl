@@ -5,13 +5,14 @@
 const float NEGLIGIBLE_COMPONENT = 5.42101086242752217e-20;  // 2^-64, of a direction whose largest is in [1, 4)
 const float FAR_ORIGIN = 16.0;                               // in scene sizes
 const float FARTHEST_MOVE = 1.2676506002282294e30;           // 2^100: beyond it splitting overflows
+const float BOX_ROOM = 1.430511474609375e-6;                 // 24 * 2^-24
 
 struct TraceRay {
   vec3 origin;
   vec3 direction;
   float t_min;
   vec3 inverse;   // reciprocal of the direction, infinite with its sign where that is zero
-  vec3 slab_pad;  // t by which the robust box test widens each slab
+  vec3 room;      // t by which the robust box test widens each slab, for a corner of the box one unit away
   uint axis;      // largest component of the direction
   vec3 shear;     // maps the direction to (0, 0, 1), axes in cyclic order with `axis` last
   float moved;    // t by which the origin was moved
@@ -58,7 +59,8 @@ bool prepare_ray(Ray ray, out TraceRay r) {
   precise vec3 shear = vec3(cycled.xy / cycled.z, 1.0 / cycled.z);
   r.shear = shear;
   r.moved = 0.0;
-  r.slab_pad = vec3(0.0);
+  precise vec3 room = abs(r.inverse) * BOX_ROOM;
+  r.room = vec3(isinf(room.x) ? 0.0 : room.x, isinf(room.y) ? 0.0 : room.y, isinf(room.z) ? 0.0 : room.z);
   return true;
 }
 
@@ -88,16 +90,6 @@ void approach_scene(Aabb box, inout TraceRay r) {
   precise float t_min = max(r.t_min - t, 0.0);
   r.t_min = t_min;
   r.moved = t;
-}
-
-// By how much the robust box test widens slabs: 2^-20 of the farthest that a corner of the scene lies from the origin,
-// along the slab's axis and along the ray's.
-void widen_slabs(Aabb box, inout TraceRay r) {
-  vec3 reach = reach_of(r.origin, box);
-  precise vec3 distance = (reach + cyclic(reach, r.axis).z) * 9.5367431640625e-7;
-  precise vec3 pad = distance * abs(r.inverse);
-  r.slab_pad = vec3(isinf(r.inverse.x) ? 0.0 : pad.x, isinf(r.inverse.y) ? 0.0 : pad.y,
-                    isinf(r.inverse.z) ? 0.0 : pad.z);
 }
 
 // A hit of the ray as given, seen from the ray as prepared.

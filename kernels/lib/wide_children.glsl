@@ -3,6 +3,8 @@
 const uint SLOTS = LANES < WIDE_CHILDREN ? WIDE_CHILDREN / LANES : 1u;
 
 struct WideChildren {
+  vec3 origin;
+  float size;  // no child's corner is farther from the origin, in the maximum norm
   vec3 box_min[SLOTS], box_max[SLOTS];
   uint word[SLOTS];
 };
@@ -40,6 +42,8 @@ void read_children(uint node, out WideChildren children) {
       uvec3(subgroupBroadcast(header, 0u), subgroupBroadcast(header, 1u), subgroupBroadcast(header, 2u)));
   uint exponents = subgroupBroadcast(header, 3u);
   vec3 step = uintBitsToFloat((uvec3(exponents, exponents >> 8, exponents >> 16) & 0xffu) << 23);
+  children.origin = origin;
+  children.size = greater(greater(step.x, step.y), step.z) * WIDE_NODE_STEPS;
   [[unroll]] for (uint slot = 0u; slot < SLOTS; ++slot) {
     uint child = held_child(slot);
     // Six bytes a child, so an odd one begins in the middle of a word.
