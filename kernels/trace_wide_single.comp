@@ -32,7 +32,7 @@ const uint ENOUGH_IDLE = (LANES * RAYS + 1u) / 2u;     // ended rays that are re
 const uint NEXT_CHILD = 0xfffffffeu;  // take the next child of the list
 const uint NO_RAY = WIDE_EMPTY;
 
-// Children to be visited, nearest first, 16 bits each: 13 bits of the key's distance, 7 of them a binade's, then the
+// Children to be visited, nearest first, 16 bits each: 13 bits of the key's distance, 8 of them a binade's, then the
 // child.
 struct ChildList {
   uint a, b, c, d;  // the lowest half of `a` comes next; NO_CHILD is beyond every distance
@@ -62,7 +62,7 @@ uint64_t stack_node[RAYS * WIDE_MAX_HEIGHT];  // and `a`
 uint64_t stack_list[RAYS * WIDE_MAX_HEIGHT];  // `b` and `c`
 uint stack_rest[RAYS * WIDE_MAX_HEIGHT];      // `d`
 
-uint short_key(uint key) { return (key >> 13 & 0xfff8u) | (key & 7u); }
+uint short_key(uint key) { return (key >> 12 & 0xfff8u) | (key & 7u); }
 uint short_keys(uint first, uint second) { return short_key(first) | short_key(second) << 16; }
 
 bool lists_any(Walk w) {

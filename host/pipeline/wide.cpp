@@ -10,11 +10,10 @@ namespace coppice {
 
 namespace {
 
-// Levels below the first: above a node of level k there are k nodes of eight children, one of them on its
-// way.
+// Above a node of level k there are k nodes of WIDE_LEAST_CHILDREN children at least, one of them on its way.
 std::uint32_t bound_levels(std::uint32_t leaves) {
   if (leaves < 2) return leaves;
-  return std::min(WIDE_MAX_HEIGHT, (leaves - 2) / (WIDE_CHILDREN - 1) + 1);
+  return std::min(WIDE_MAX_HEIGHT, (leaves - 2) / (WIDE_LEAST_CHILDREN - 1) + 1);
 }
 
 // A slot in the place of another, `first_byte` bytes behind its beginning.
@@ -46,7 +45,7 @@ void add_scratch(Layout& layout, WidePlan& plan, std::uint32_t bound, const Buil
 
 std::uint32_t wide_nodes_bound(std::uint32_t leaves) {
   if (leaves < 2) return leaves;
-  return static_cast<std::uint32_t>((4 * std::uint64_t{leaves} - 1) / 7);
+  return static_cast<std::uint32_t>(3 * std::uint64_t{leaves} / 5);
 }
 
 WidePlan plan_wide(Layout& layout, TreeSlots& tree, const BuildPlan* finished) {

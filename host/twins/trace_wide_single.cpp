@@ -16,8 +16,8 @@ namespace {
 constexpr float room_by_reach = 0x1p-19f, room_by_origin = 0x1p-23f, room_by_offset = 0x1p-18f;
 constexpr float farthest_reach = 0x1p60f;
 constexpr float most_inverse = 0x1p64f;
-constexpr float share_of_range = 1 - 0x1p-7f;
-constexpr int binades = 64;  // below the range
+constexpr float share_of_range = 1 - 0x1p-8f;
+constexpr int binades = 32;  // below the range
 
 // The distances of one ray to the planes of wide nodes: t plus an offset, so that those that matter are
 // positive.
@@ -33,7 +33,7 @@ class Distances {
     range_ = std::ldexp(1.0f, exponent);
     const bool may_be_negative = ray.t_min < 0;
     offset_ = may_be_negative ? 3 * range_ : 0;
-    base_ = may_be_negative ? 2 * range_ : exponent - binades < FLT_MIN_EXP - 1 ? 0 : range_ * 0x1p-64f;
+    base_ = may_be_negative ? 2 * range_ : exponent - binades < FLT_MIN_EXP - 1 ? 0 : range_ * 0x1p-32f;
     const bool meets_all = !(std::max({reach[0], reach[1], reach[2]}) < farthest_reach);
     first = meets_all ? base_ : std::max(std::clamp(ray.t_min, -range_, range_) + offset_, base_);
     for (int axis = 0; axis < 3; ++axis) {
@@ -53,9 +53,9 @@ class Distances {
     return std::max(std::clamp(t, -range_, range_ * share_of_range) + offset_, base_);
   }
 
-  // The distance as far as a list of children keeps it, in 13 bits: seven of the mantissa, and the binade.
+  // The distance as far as a list of children keeps it, in 13 bits: eight of the mantissa, and the binade.
   uint kept_bits(float distance) const {
-    return (std::bit_cast<uint>(distance) - std::bit_cast<uint>(base_)) >> 16 & 0x1fff;
+    return (std::bit_cast<uint>(distance) - std::bit_cast<uint>(base_)) >> 15 & 0x1fff;
   }
 
   // Where the ray enters a child's box; false if it misses it up to `limit`.

@@ -21,16 +21,25 @@ std::array<uint, WIDE_CHILDREN> wide_children(NodeBuffer nodes, uint root) {
   const Normalisation normalise(Aabb{nodes[0].box_min, nodes[0].box_max});
   const auto area = [&](uint child) {
     const Aabb box{normalise(nodes[child].box_min), normalise(nodes[child].box_max)};
-    const float weights[] = {0, WIDE_HEIGHT_1_WEIGHT, WIDE_HEIGHT_2_WEIGHT, 1};
-    return weights[std::min(nodes[child].height, 3u)] * union_area(box, box);
+    return union_area(box, box);
+  };
+  const float whole = area(root);
+  // Small children last, as if they had a negative area.
+  const auto weighted_area = [&](uint child) {
+    const float weights[] = {0, WIDE_HEIGHT_1_WEIGHT, WIDE_HEIGHT_2_WEIGHT};
+    const uint height = nodes[child].height;
+    if (height <= WIDE_LOW_HEIGHT) return weights[height] * area(child);
+    return area(child) * WIDE_SMALL_PARTS < whole ? -1.0f : area(child);
   };
   std::vector<uint> children = {word_of(nodes, root)};
   while (children.size() < WIDE_CHILDREN) {
     auto widest = children.end();
     for (auto child = children.begin(); child != children.end(); ++child) {
-      if (!is_leaf(*child) && (widest == children.end() || area(*child) > area(*widest))) widest = child;
+      if (!is_leaf(*child) && (widest == children.end() || weighted_area(*child) > weighted_area(*widest)))
+        widest = child;
     }
     if (widest == children.end()) break;
+    if (children.size() >= WIDE_LEAST_CHILDREN && weighted_area(*widest) < 0) break;
     const uint pair = nodes[*widest].child;
     *widest = word_of(nodes, pair);
     children.push_back(word_of(nodes, pair + 1));

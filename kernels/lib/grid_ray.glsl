@@ -22,8 +22,8 @@ const float GRID_OFFSET_ROOM = 3.814697265625e-6;          // 2^-18
 const float GRID_FARTHEST = 1.152921504606846976e18;       // 2^60: products of farther coordinates may overflow
 const float GRID_MEETS_ALL = 8.50705917302346159e37;       // 2^126: beyond every limit
 const float GRID_MOST_INVERSE = 1.8446744073709551616e19;  // 2^64, of components that count as 0
-const float GRID_SHARE = 0.9921875;                        // of the range: no distance has thirteen set bits
-const uint GRID_BINADES = 64u;                             // below the range, that distances are told apart in
+const float GRID_SHARE = 0.99609375;                       // of the range: no distance has thirteen set bits
+const uint GRID_BINADES = 32u;                             // below the range, that distances are told apart in
 
 float finite_inverse(float x) {
   return isinf(x) ? (floatBitsToUint(x) >> 31 != 0u ? -GRID_MOST_INVERSE : GRID_MOST_INVERSE) : x;

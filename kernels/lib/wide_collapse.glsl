@@ -3,11 +3,13 @@
 //
 // It starts with the root of the wide node as the only child. As long as there are fewer than eight, the internal child
 // of largest weighted half area, of equal ones the first, gives its place to its first child, and its second child is
-// appended. Areas are normalised, so none that is denormal or infinite decides: docs/numerics.md.
+// appended. A child that is small beside the node comes last, and is opened only where there are few children. Areas are
+// normalised, so none that is denormal or infinite decides: docs/numerics.md.
 #include "lib/node_words.glsl"
 #include "lib/normalised.glsl"
 
 const float NEVER_OPENED = -1.0;  // below every area
+const float SMALL = -0.5;         // in the place of the area of a small child
 
 struct Candidate {
   uint child;  // as in WideCollapseArgs::children
@@ -15,18 +17,29 @@ struct Candidate {
   float area;
 };
 
-Candidate candidate(uint index, Node node, Normalisation normalisation) {
+float normalised_area(Node node, Normalisation normalisation) {
   precise vec3 extent = normalised(node.box_max, normalisation) - normalised(node.box_min, normalisation);
   precise float area = extent.x * extent.y + extent.y * extent.z + extent.z * extent.x;
-  area *= node.height == 1u ? WIDE_HEIGHT_1_WEIGHT : (node.height == 2u ? WIDE_HEIGHT_2_WEIGHT : 1.0);
-  return node.height == 0u ? Candidate(index | WIDE_LEAF, 0u, NEVER_OPENED) : Candidate(index, node.child, area);
+  return area;
+}
+
+// `whole` is the area of the wide node.
+Candidate candidate(uint index, Node node, float whole, Normalisation normalisation) {
+  if (node.height == 0u) return Candidate(index | WIDE_LEAF, 0u, NEVER_OPENED);
+  float area = normalised_area(node, normalisation);
+  precise float part = area * WIDE_SMALL_PARTS;
+  if (node.height > WIDE_LOW_HEIGHT) area = part < whole ? SMALL : area;
+  else area *= node.height == 1u ? WIDE_HEIGHT_1_WEIGHT : WIDE_HEIGHT_2_WEIGHT;
+  return Candidate(index, node.child, area);
 }
 
 // Writes the children of a new wide node. Returns how many of them are wide nodes.
 uint collapse(uint entry, uint root, Normalisation normalisation) {
   Candidate candidates[WIDE_CHILDREN];
   [[unroll]] for (uint c = 0u; c < WIDE_CHILDREN; ++c) candidates[c] = Candidate(WIDE_EMPTY, 0u, NEVER_OPENED);
-  candidates[0] = candidate(root, load_node(args.nodes, root), normalisation);
+  Node root_node = load_node(args.nodes, root);
+  float whole = normalised_area(root_node, normalisation);
+  candidates[0] = candidate(root, root_node, whole, normalisation);
   [[unroll]] for (uint count = 1u; count < WIDE_CHILDREN; ++count) {
     uint opened = 0u;
     Candidate largest = candidates[0];
@@ -36,9 +49,9 @@ uint collapse(uint entry, uint root, Normalisation normalisation) {
         opened = c;
       }
     }
-    if (largest.area != NEVER_OPENED) {
-      Candidate left = candidate(largest.pair, load_node(args.nodes, largest.pair), normalisation);
-      candidates[count] = candidate(largest.pair + 1u, load_node(args.nodes, largest.pair + 1u), normalisation);
+    if (largest.area > (count < WIDE_LEAST_CHILDREN ? NEVER_OPENED : SMALL)) {
+      Candidate left = candidate(largest.pair, load_node(args.nodes, largest.pair), whole, normalisation);
+      candidates[count] = candidate(largest.pair + 1u, load_node(args.nodes, largest.pair + 1u), whole, normalisation);
       [[unroll]] for (uint c = 0u; c < count; ++c) {
         if (c == opened) candidates[c] = left;
       }

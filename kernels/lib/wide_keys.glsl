@@ -2,7 +2,7 @@
 
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer WideWordsBuffer { u64vec4 at[]; };
 
-const uint NO_KEY = 0x1fffffffu;
+const uint NO_KEY = 0x0fffffffu;
 
 int plane_distance(uint bytes, uint shift, float scale, float start) {
   precise float distance = float(int((bytes >> shift) & 0xffu)) * scale + start;
