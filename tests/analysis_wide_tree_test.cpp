@@ -21,10 +21,15 @@ namespace {
 
 // --- A collapse in the words of the paper, without levels, scans or normalised boxes.
 
-float weighted_area(const Node& node) {
+float half_area(const Node& node) {
   const vec3 extent = node.box_max - node.box_min;
-  const float weight = node.height == 1 ? 16.0f : node.height == 2 ? 4.0f : 1.0f;
-  return weight * (extent[0] * extent[1] + extent[1] * extent[2] + extent[2] * extent[0]);
+  return extent[0] * extent[1] + extent[1] * extent[2] + extent[2] * extent[0];
+}
+
+// Negative for a small part of `whole` that is no higher than two.
+float weighted_area(const Node& node, const Node& whole) {
+  if (node.height <= 2) return half_area(node) * (node.height == 1 ? 16.0f : 4.0f);
+  return half_area(node) < half_area(whole) / 1024 ? -1.0f : half_area(node);
 }
 
 struct PlainNode {
@@ -41,9 +46,11 @@ uint collapse(std::span<const Node> nodes, uint root, std::vector<PlainNode>& wi
     int best = -1;
     for (int c = 0; c < static_cast<int>(children.size()); ++c) {
       if (nodes[children[c]].height == 0) continue;
-      if (best < 0 || weighted_area(nodes[children[c]]) > weighted_area(nodes[children[best]])) best = c;
+      const auto area = [&](uint child) { return weighted_area(nodes[child], nodes[root]); };
+      if (best < 0 || area(children[c]) > area(children[best])) best = c;
     }
     if (best < 0) break;
+    if (children.size() >= 3 && weighted_area(nodes[children[best]], nodes[root]) < 0) break;
     const uint pair = nodes[children[best]].child;
     children[best] = pair;
     children.push_back(pair + 1);
@@ -101,6 +108,15 @@ TEST(WideTreeOfTwins, IsThatOfAPlainCollapse) {
   }
 }
 
+TEST(WideTreeOfTwins, IsThatOfAPlainCollapseWhereChildrenAreSmall) {
+  for (const char* name : {"detail-on-ground", "detail-in-dome", "stray-corner", "detail-in-detail"}) {
+    for (const uint count : {9u, 20u, 300u, 3000u}) {
+      const auto triangles = scene_arrays(find_hard_case(name)->make(count, 1)).triangles;
+      expect_as_plainly_collapsed(build_ploc(triangles, {.radius = 8}).nodes, name + std::to_string(count));
+    }
+  }
+}
+
 TEST(WideTreeOfTwins, HardCasesAreValidAndTight) {
   for (const HardCase& hard_case : hard_cases()) {
     const auto triangles =
@@ -110,10 +126,10 @@ TEST(WideTreeOfTwins, HardCasesAreValidAndTight) {
   }
 }
 
-// A perfect tree of 2 * 8^k leaves has the most wide nodes if those at the bottom have two leaves each. So it
-// is where pairs of leaves coincide in points: their nodes have no area and are opened last.
-TEST(WideTreeOfTwins, MeetsItsBoundOnPerfectTrees) {
-  const uint leaves = 2 * 8 * 8 * 8;
+// A perfect tree of 2 * 8^k leaves has the most wide nodes without small children if those at the bottom have
+// two leaves each. So it is where pairs of leaves coincide in points: their nodes have no area and are opened
+// last.
+std::vector<Node> perfect_tree(uint leaves) {
   std::vector<Node> nodes(2 * leaves - 1);
   for (uint i = static_cast<uint>(nodes.size()); i-- > 0;) {
     const uint depth = std::bit_width(i + 1) - 1, row = i + 1 - (1u << depth);
@@ -124,9 +140,52 @@ TEST(WideTreeOfTwins, MeetsItsBoundOnPerfectTrees) {
     const uint height = leaf ? 0 : nodes[2 * i + 1].height + 1;
     nodes[i] = {low, leaf ? row : 2 * i + 1, height < 2 ? low : high, height};
   }
+  return nodes;
+}
+
+TEST(WideTreeOfTwins, PerfectTreesHaveFourWideNodesOfSevenLeaves) {
+  const uint leaves = 2 * 8 * 8 * 8;
+  const std::vector<Node> nodes = perfect_tree(leaves);
   const std::vector<WideNode> wide = widen_by_twins(nodes);
   EXPECT_EQ(find_wide_fault(wide, nodes), std::nullopt);
-  EXPECT_EQ(wide.size(), wide_nodes_bound(leaves));
+  EXPECT_EQ(wide.size(), (4 * leaves - 1) / 7);
+  EXPECT_LE(wide.size(), wide_nodes_bound(leaves));
+}
+
+// Three trees under a root whose children they are.
+std::vector<Node> three_trees(const std::vector<Node>& tree, float distance) {
+  std::vector<Node> nodes(5);
+  for (uint k = 0; k < 3; ++k) {
+    const uint place = k == 0 ? 1 : 2 + k, first = static_cast<uint>(nodes.size());
+    const auto moved = [&](Node node) {
+      const vec3 by(0, static_cast<float>(k) * distance, static_cast<float>(k % 2) * distance);
+      node.box_min += by;
+      node.box_max += by;
+      node.child += node.height == 0 ? k * static_cast<uint>(tree.size() + 1) / 2 : first - 1;
+      return node;
+    };
+    nodes[place] = moved(tree[0]);
+    for (const Node& node : std::span(tree).subspan(1)) nodes.push_back(moved(node));
+  }
+  for (const uint parent : {2u, 0u}) {
+    const Node &left = nodes[parent + 1], &right = nodes[parent + 2];
+    nodes[parent] = {glm::min(left.box_min, right.box_min), parent + 1, glm::max(left.box_max, right.box_max),
+                     std::max(left.height, right.height) + 1};
+  }
+  return nodes;
+}
+
+// As many as there may be: nodes of three small children, above nodes of eight, above pairs of leaves.
+TEST(WideTreeOfTwins, MeetsItsBoundWhereChildrenAreSmall) {
+  std::vector<Node> nodes = perfect_tree(16);
+  for (const float distance : {1e5f, 1e9f}) {
+    nodes = three_trees(nodes, distance);
+    const uint leaves = static_cast<uint>(nodes.size() + 1) / 2;
+    const std::vector<WideNode> wide = widen_by_twins(nodes);
+    EXPECT_EQ(find_wide_fault(wide, nodes), std::nullopt);
+    EXPECT_EQ(wide.size(), (19 * leaves - 16) / 32);
+    EXPECT_LE(wide.size(), wide_nodes_bound(leaves));
+  }
 }
 
 TEST(WideTreeOfTwins, ChainsUpToTheHeightThatIsTaken) {

@@ -17,7 +17,7 @@ Aabb decoded_box(const WideNode& node, uint child);
 // - no node where there is no binary one; else the root at 0, children behind their parents in depth-first
 //   order, in the order of their slots, and each node reached exactly once;
 // - empty children behind the others, inverted; at least two children in a node, or one where there is only
-//   one leaf; eight where one of them is a wide node;
+//   one leaf; WIDE_LEAST_CHILDREN where one of them is a wide node, and eight if one is that is not small;
 // - each triangle of the binary tree in exactly one leaf, and no other;
 // - the box of a child contains the boxes that the binary tree has for the triangles below it;
 // - no more levels than the binary tree has.

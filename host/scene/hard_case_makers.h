@@ -19,6 +19,8 @@ Maker shrinking_gaps, shrinking_gaps_plane, shrinking_gaps_spiral;
 Maker geometric_gaps, geometric_gaps_plane, geometric_gaps_spiral;
 // hard_cases_range.cpp: coordinates at the ends of the range of float, and beyond.
 Maker non_finite, all_non_finite, huge, large, tiny, mixed_scales, far, farther, negative_zero;
+// hard_cases_scales.cpp: a detail in a scene whose box is far larger.
+Maker detail_on_ground, detail_in_dome, stray_corner, detail_in_detail;
 // hard_cases_shapes.cpp: triangles of odd shape, odd index buffers.
 Maker planar_grid, dyadic_grid, points, needles, diagonals, huge_over_tiny, edge_pairs;
 Maker repeated_indices, repeated_positions;
