@@ -26,7 +26,7 @@ float half_area(const Node& node) {
   return extent[0] * extent[1] + extent[1] * extent[2] + extent[2] * extent[0];
 }
 
-// Negative for a small part of `whole` that is no higher than two.
+// Negative for a small part of `whole` that is higher than two.
 float weighted_area(const Node& node, const Node& whole) {
   if (node.height <= 2) return half_area(node) * (node.height == 1 ? 16.0f : 4.0f);
   return half_area(node) < half_area(whole) / 1024 ? -1.0f : half_area(node);
@@ -178,7 +178,7 @@ std::vector<Node> three_trees(const std::vector<Node>& tree, float distance) {
 // As many as there may be: nodes of three small children, above nodes of eight, above pairs of leaves.
 TEST(WideTreeOfTwins, MeetsItsBoundWhereChildrenAreSmall) {
   std::vector<Node> nodes = perfect_tree(16);
-  for (const float distance : {1e5f, 1e9f}) {
+  for (const float distance : {1e5f, 8e6f}) {
     nodes = three_trees(nodes, distance);
     const uint leaves = static_cast<uint>(nodes.size() + 1) / 2;
     const std::vector<WideNode> wide = widen_by_twins(nodes);
