@@ -3,9 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <glm/geometric.hpp>
+#include <numeric>
 #include <vector>
 
+#include "scene/orientation.h"
+#include "scene/sweep_polygon.h"
 #include "scene/triangulate.h"
+#include "support/outlines.h"
 
 namespace coppice {
 namespace {
@@ -21,13 +26,36 @@ double area(const std::vector<glm::vec3>& positions, const std::vector<glm::uvec
   return sum;
 }
 
-std::vector<glm::uvec3> cut(const std::vector<glm::vec3>& polygon) {
-  std::vector<std::uint32_t> indices;
-  for (std::uint32_t i = 0; i < polygon.size(); ++i) indices.push_back(i);
+struct Cut {
   std::vector<glm::uvec3> triangles;
-  triangulate(polygon, indices, triangles);
-  EXPECT_EQ(triangles.size(), polygon.size() - 2);
-  return triangles;
+  bool is_whole;
+};
+
+Cut cut_any(const std::vector<glm::vec3>& polygon) {
+  std::vector<std::uint32_t> indices(polygon.size());
+  std::iota(indices.begin(), indices.end(), 0u);
+  Cut cut;
+  cut.is_whole = triangulate(polygon, indices, cut.triangles);
+  EXPECT_EQ(cut.triangles.size(), polygon.size() - 2);
+  return cut;
+}
+
+std::vector<glm::uvec3> cut(const std::vector<glm::vec3>& polygon) {
+  Cut result = cut_any(polygon);
+  EXPECT_TRUE(result.is_whole);
+  return std::move(result.triangles);
+}
+
+TEST(Orientation, IsExactWhereDoubleIsNot) {
+  const float e = std::ldexp(1.0f, -24);
+  EXPECT_EQ(orientation({0.5f, 0.5f}, {12, 12}, {24, 24}), 0);
+  EXPECT_EQ(orientation({0.5f, 0.5f + e}, {12, 12}, {24, 24}), 1);
+  EXPECT_EQ(orientation({0.5f + e, 0.5f}, {12, 12}, {24, 24}), -1);
+  // One part in 2^100 of the products decides.
+  EXPECT_EQ(orientation({0x1p-100f, 0}, {0x1p20f, 0x1p20f}, {-0x1p20f, -0x1p20f}), 1);
+  EXPECT_EQ(orientation({-0x1p-100f, 0}, {0x1p20f, 0x1p20f}, {-0x1p20f, -0x1p20f}), -1);
+  EXPECT_EQ(orientation({0x1p-149f, 0}, {0x1p-149f, 0x1p-149f}, {0, 0}), 1);
+  EXPECT_EQ(orientation({-3e38f, -3e38f}, {3e38f, -3e38f}, {3e38f, 3e38f}), 1);
 }
 
 TEST(Triangulate, CoversAConvexPolygon) {
@@ -52,12 +80,185 @@ TEST(Triangulate, CoversAConcaveQuad) {
   }
 }
 
-TEST(Triangulate, LosesNoTriangleOfPolygonsWithoutACut) {
-  cut({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}});                      // bow tie
-  cut({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {1, 0, 0}});           // flat
-  cut({{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}});                      // a point
-  cut({{0, 0, 0}, {NAN, 1, 0}, {1, 0, 0}, {0, INFINITY, 0}, {0, 0, 1}});  // not finite
-  cut({{-3e38f, -3e38f, 0}, {3e38f, -3e38f, 0}, {3e38f, 3e38f, 0}, {0, 0, 0}, {-3e38f, 3e38f, 0}});
+TEST(Triangulate, ACornerThatStandsTwiceHidesNoReflexAngle) {
+  for (int times = 2; times < 5; ++times) {
+    std::vector<glm::vec3> arrow = {{4, 0, 0}};
+    arrow.insert(arrow.end(), static_cast<std::size_t>(times), {1, 1, 0});
+    arrow.insert(arrow.end(), {{0, 4, 0}, {0, 0, 0}});
+    for (std::size_t start = 0; start < arrow.size(); ++start) {
+      EXPECT_DOUBLE_EQ(area(arrow, cut(arrow)), 4);
+      std::rotate(arrow.begin(), arrow.begin() + 1, arrow.end());
+    }
+  }
+}
+
+TEST(Triangulate, LosesNoTriangleOfPolygonsWithoutAnArea) {
+  cut({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {1, 0, 0}});             // flat
+  cut({{0, 0, 0}, {2, 0, 0}, {1, 0, 0}, {3, 0, 0}, {0, 0, 0}, {1, 0, 0}});  // flat, to and fro
+  cut({{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}});                        // a point
+}
+
+TEST(Triangulate, SaysWhereEdgesCross) {
+  EXPECT_FALSE(cut_any({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}}).is_whole);  // bow tie
+  EXPECT_FALSE(cut_any({{0, 0, 0}, {3, 3, 0}, {3, 0, 0}, {0, 2, 0}}).is_whole);
+  // A star of five points in one stroke, which winds twice around its middle.
+  EXPECT_FALSE(cut_any({{0, 3, 0}, {-2, -3, 0}, {3, 1, 0}, {-3, 1, 0}, {2, -3, 0}}).is_whole);
+}
+
+TEST(Triangulate, CoversBothHalvesOfAnEightWithACornerInItsMiddle) {
+  const std::vector<glm::vec3> eight = {{0, 0, 0}, {2, 1, 0}, {2, -1, 0}, {0, 0, 0}, {-3, 1, 0}, {-3, -1, 0}};
+  double sum = 0;
+  for (const glm::uvec3 t : cut(eight)) {
+    const glm::vec3 a = eight[t.x], b = eight[t.y], c = eight[t.z];
+    sum += std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) / 2;
+  }
+  EXPECT_DOUBLE_EQ(sum, 5);
+}
+
+TEST(Triangulate, APolygonWithABrokenCornerIsBrokenAsAWhole) {
+  std::vector<glm::vec3> polygon = {{0, 0, 0}, {4, 0, 0}, {1, 1, 0}, {0, 4, 0}, {-1, 1, 0}};
+  for (const float broken : {NAN, INFINITY}) {
+    for (std::uint32_t corner = 0; corner < polygon.size(); ++corner) {
+      std::vector<glm::vec3> changed = polygon;
+      changed[corner].y = broken;
+      for (const glm::uvec3 t : cut(changed)) EXPECT_TRUE(t.x == corner || t.y == corner || t.z == corner);
+    }
+  }
+}
+
+TEST(Triangulate, TakesAllOfFloatsRange) {
+  for (const float size : {3e38f, 1e-38f, 4e-45f}) {
+    const std::vector<glm::vec3> arrow = {
+        {-size, -size, 0}, {size, -size, 0}, {size, size, 0}, {0, 0, 0}, {-size, size, 0}};
+    double sum = 0;
+    for (const glm::uvec3 t : cut(arrow)) {
+      const glm::dvec3 a = arrow[t.x], b = arrow[t.y], c = arrow[t.z];
+      sum += ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) / 2;
+    }
+    EXPECT_DOUBLE_EQ(sum, 3.0 * size * size);
+  }
+}
+
+TEST(Triangulate, SearchesNoLongerThanBoundedForWhatIsNotThere) {
+  Random random(3);
+  std::vector<glm::vec3> scribble;
+  for (int i = 0; i < 20'000; ++i) scribble.push_back(random.in_cube());
+  EXPECT_FALSE(cut_any(scribble).is_whole);
+}
+
+Outline random_outline(Random& random) {
+  switch (random.below(4)) {
+    case 0:
+      return star_outline(random, 20);
+    case 1:
+      return blocks_outline(random, 40);
+    case 2:
+      return holes_outline(random, 4);
+    default:
+      return comb_outline(random, 1 + random.below(5));
+  }
+}
+
+// Edges that meant to lie on each other are apart by a rounding, so that they cross or enclose slivers.
+TEST(Triangulate, IsNotMisledByRoundedCorners) {
+  Random random(4);
+  for (int i = 0; i < 2000; ++i) {
+    const Outline outline = decorated(random_outline(random), random);
+    const glm::vec2 turned = turn_to_circle(random.uniform());
+    std::vector<glm::vec3> positions;
+    for (const glm::vec2 p : outline) {
+      positions.emplace_back(turned.x * p.x - turned.y * p.y + 0.1f, turned.y * p.x + turned.x * p.y, 0);
+    }
+    double sum = 0;
+    for (const glm::uvec3 t : cut(positions)) {
+      const glm::dvec3 a = positions[t.x], b = positions[t.y], c = positions[t.z];
+      sum += std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
+    }
+    const double expected = static_cast<double>(twice_area(outline)) * glm::dot(turned, turned);
+    ASSERT_NEAR(sum, expected, 1e-3 * expected) << "outline " << i;
+  }
+}
+
+// The corners of an outline in space: any two axes, either winding, all sizes, and a third coordinate that is
+// no plane's, but so little that the outline's area is still the greatest on its own two axes.
+std::vector<glm::vec3> in_space(const Outline& outline, Random& random) {
+  const int u = static_cast<int>(random.below(3)), v = (u + 1) % 3, w = (u + 2) % 3;
+  const float scale = std::ldexp(1.0f, static_cast<int>(random.below(200)) - 100);
+  const int x = static_cast<int>(random.below(1u << 16)), y = static_cast<int>(random.below(1u << 16));
+  double length = 1;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const glm::ivec2 edge = outline[i] - outline[(i + 1) % outline.size()];
+    length += std::abs(edge.x) + std::abs(edge.y);
+  }
+  const float height = random.below(2) == 0 ? 0 : static_cast<float>(twice_area(outline) / (16 * length));
+  std::vector<glm::vec3> positions;
+  for (const glm::ivec2 p : outline) {
+    glm::vec3 position;
+    position[u] = static_cast<float>(p.x + x) * scale;
+    position[v] = static_cast<float>(p.y + y) * scale;
+    position[w] = random.uniform(-height, height) * scale;
+    positions.push_back(position);
+  }
+  return positions;
+}
+
+// Whether all triangles have `side` as their winding or no area, and the area of the outline in all.
+testing::AssertionResult covers(const std::vector<glm::uvec3>& triangles, const Outline& outline, int side) {
+  std::int64_t sum = 0;
+  for (const glm::uvec3 t : triangles) {
+    const std::int64_t twice = side * cross(outline[t.y] - outline[t.x], outline[t.z] - outline[t.x]);
+    if (twice < 0) return testing::AssertionFailure() << "a triangle is turned over";
+    sum += twice;
+  }
+  if (sum == twice_area(outline)) return testing::AssertionSuccess();
+  auto failure = testing::AssertionFailure() << sum << " in place of " << twice_area(outline) << ":";
+  for (const glm::ivec2 p : outline) failure << " (" << p.x << "," << p.y << ")";
+  return failure;
+}
+
+TEST(Triangulate, CoversRandomOutlines) {
+#ifdef __SANITIZE_ADDRESS__
+  constexpr int count = 10'000;
+#else
+  constexpr int count = 100'000;
+#endif
+  Random random(1);
+  for (int i = 0; i < count; ++i) {
+    Outline outline = random_outline(random);
+    if (i % 2 == 0) outline = decorated(outline, random);
+    std::rotate(outline.begin(), outline.begin() + random.below(static_cast<std::uint32_t>(outline.size())),
+                outline.end());
+    std::vector<std::uint32_t> indices(outline.size());
+    std::iota(indices.begin(), indices.end(), 0u);
+    const int side = random.below(2) == 0 ? 1 : -1;
+    if (side < 0) std::ranges::reverse(indices);
+    std::vector<glm::uvec3> triangles;
+    ASSERT_TRUE(triangulate(in_space(outline, random), indices, triangles)) << "outline " << i;
+    ASSERT_EQ(triangles.size(), outline.size() - 2) << "outline " << i;
+    ASSERT_TRUE(covers(triangles, outline, side)) << "outline " << i;
+
+    // The sweep alone, which small outlines rarely need.
+    std::vector<glm::vec2> flat;
+    for (const glm::ivec2 p : outline) flat.emplace_back(p.x, p.y);
+    triangles.clear();
+    ASSERT_TRUE(sweep_polygon(flat, triangles)) << "outline " << i;
+    ASSERT_LE(triangles.size(), outline.size() - 2) << "outline " << i;
+    ASSERT_TRUE(covers(triangles, outline, 1)) << "outline " << i;
+  }
+}
+
+TEST(Triangulate, CoversLargeOutlines) {
+  Random random(2);
+  for (const std::uint32_t corners : {1000u, 10'000u, 100'000u}) {
+    const Outline comb = comb_outline(random, corners / 4);
+    for (const Outline& outline :
+         {star_outline(random, corners), comb, holes_outline(random, corners / 7), decorated(comb, random)}) {
+      std::vector<glm::vec3> lying, standing;  // along the line of the sweep and across it
+      for (const glm::ivec2 p : outline) lying.emplace_back(p.x, p.y, 0), standing.emplace_back(p.y, p.x, 0);
+      EXPECT_TRUE(covers(cut(lying), outline, 1)) << corners;
+      EXPECT_TRUE(covers(cut(standing), outline, 1)) << corners;
+    }
+  }
 }
 
 }  // namespace

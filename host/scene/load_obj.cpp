@@ -18,6 +18,7 @@ struct Reading {
   ObjMaterials& materials;
   std::int64_t vertices_so_far = 0;
   std::uint32_t material = 0;
+  std::size_t crossing_count = 0;      // polygons that are no area
   std::vector<std::uint32_t> polygon;  // reused
 
   void add_face(std::span<const tinyobj::index_t> corners) {
@@ -26,7 +27,7 @@ struct Reading {
       const std::int64_t i = corner.vertex_index;  // from 1, or from -1 backwards
       polygon.push_back(static_cast<std::uint32_t>(i > 0 ? i - 1 : vertices_so_far + i));
     }
-    triangulate(scene.positions, polygon, scene.indices);
+    crossing_count += !triangulate(scene.positions, polygon, scene.indices);
     scene.material_index.resize(scene.indices.size(), material);
   }
 };
@@ -61,6 +62,11 @@ Scene parse_obj(std::string text, const std::string& name,
   std::istringstream stream(std::move(obj.text));
   tinyobj::LoadObjWithCallback(stream, callbacks(), &reading, &materials);
   scene.materials = materials.take();
+  if (reading.crossing_count > 0) {
+    scene.warnings.push_back(name + ": " + std::to_string(reading.crossing_count) +
+                             (reading.crossing_count == 1 ? " polygon" : " polygons") +
+                             " with edges that cross or go round twice, cut into triangles that may overlap");
+  }
   return scene;
 }
 
