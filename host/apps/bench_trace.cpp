@@ -121,7 +121,7 @@ void bench_trees(CheckedDevice& device, const Options& options, const Scene& sce
 }  // namespace
 
 void bench_trace(CheckedDevice& device, const Options& options, const AddRow& add) {
-  const Scene scene = open_scene(options.scene);
+  const Scene scene = open_scene(options.scene, options.up);
   Options one = options;
   for (const std::string& builder :
        options.builders.empty() ? std::vector{options.builder} : options.builders) {
@@ -131,7 +131,7 @@ void bench_trace(CheckedDevice& device, const Options& options, const AddRow& ad
 }
 
 BenchRow bench_primary_rays(CheckedDevice& device, const Options& options, const std::string& tree) {
-  const Scene scene = open_scene(options.scene);
+  const Scene scene = open_scene(options.scene, options.up);
   TraceBench bench(device, options, scene);
   return bench.measure("trace_primary", bench.primary(), tree);
 }

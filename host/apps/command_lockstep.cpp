@@ -50,7 +50,7 @@ struct HitTolerance {
 }  // namespace
 
 int run_lockstep(const Options& options) {
-  const Scene scene = open_scene(options.scene);
+  const Scene scene = open_scene(options.scene, options.up);
   print_warnings(scene);
   const SceneArrays arrays = scene_arrays(scene);
   CheckedDevice device = open_device(options);

@@ -26,12 +26,23 @@ Json effects_of(const Scene& scene) {
   return effects;
 }
 
+// In the coordinates of the file, as --camera takes them.
+Json camera_of(const Scene& scene, const Options& options) {
+  const View view = choose_view(scene, options.camera, options.width, options.height);
+  return {{"eye", coordinates(to_file(scene, view.eye))},
+          {"target", coordinates(to_file(scene, view.target))},
+          {"up", coordinates(direction_to_file(scene, -view.down))},
+          {"fov", view.vertical_fov_degrees}};
+}
+
 Json to_json(const RenderReport& report, const Scene& scene, const Options& options) {
   const double rays = static_cast<double>(report.rays);
   return {{"build", to_json(report.build)},
           {"width", options.width},
           {"height", options.height},
           {"spp", options.samples},
+          {"offset", coordinates(scene.offset)},
+          {"camera", camera_of(scene, options)},
           {"tracer", options.tracer},
           {"trace_device", report.trace_device},
           {"tree", report.walks_wide ? "wide" : "binary"},
@@ -82,7 +93,7 @@ int run_render(const Options& options) {
     throw InputError("--tree " + options.tree + " is for the tracer on the device, not for --tracer cpu");
   check_writable(options.output);
   const auto load_start = Clock::now();
-  const Scene scene = open_scene(options.scene);
+  const Scene scene = open_scene(options.scene, options.up);
   const double load_ms = ms_since(load_start);
   print_warnings(scene);
 

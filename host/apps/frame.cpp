@@ -4,7 +4,7 @@
 #include <cfloat>
 #include <cmath>
 #include <cstdio>
-#include <glm/geometric.hpp>
+#include <glm/common.hpp>
 #include <glm/trigonometric.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
@@ -44,39 +44,25 @@ void print_warnings(const Scene& scene) {
   for (const std::string& warning : scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
 }
 
-Film make_film(const Scene& scene, std::span<const float> given, std::uint32_t width, std::uint32_t height,
+View choose_view(const Scene& scene, std::span<const double> given, std::uint32_t width,
+                 std::uint32_t height) {
+  if (!given.empty()) return given_view(scene, given);
+  return view_of(frame_scene(scene, static_cast<float>(width) / static_cast<float>(height)));
+}
+
+Film make_film(const Scene& scene, std::span<const double> given, std::uint32_t width, std::uint32_t height,
                std::uint32_t samples) {
-  Camera camera = frame_scene(scene, static_cast<float>(width) / static_cast<float>(height));
-  if (!given.empty()) {
-    const auto scaled = [&](std::size_t first) {
-      vec3 point;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double coordinate = std::ldexp(double{given[first + axis]}, scene.scale_exponent);
-        point[static_cast<int>(axis)] = static_cast<float>(std::clamp<double>(coordinate, -FLT_MAX, FLT_MAX));
-      }
-      return point;
-    };
-    camera.position = scaled(0);
-    camera.target = scaled(3);
-    camera.up = {0, 1, 0};
-    if (given.size() > 6) camera.vertical_fov_degrees = given[6];
-  }
-  using dvec3 = glm::dvec3;
-  const dvec3 forward = glm::normalize(dvec3(camera.target) - dvec3(camera.position));
-  const bool vertical = std::abs(glm::dot(forward, glm::normalize(dvec3(camera.up)))) > 0.9999;
-  const dvec3 up = vertical ? dvec3(0, 0, 1) : dvec3(camera.up);
-  const dvec3 right = glm::normalize(glm::cross(forward, up));
-  const dvec3 down = glm::cross(forward, right);
-  const double half_height = std::tan(glm::radians(double{camera.vertical_fov_degrees}) / 2);
+  const View view = choose_view(scene, given, width, height);
+  const double half_height = std::tan(glm::radians(view.vertical_fov_degrees) / 2);
   const double half_width = half_height * width / height;
   Film film{};
-  film.position = camera.position;
+  film.position = glm::clamp(view.eye, -double{FLT_MAX}, double{FLT_MAX});
   film.width = width;
   film.height = height;
   film.samples = samples;
-  film.corner = forward - right * half_width - down * half_height;
-  film.right = right * (2 * half_width / width);
-  film.down = down * (2 * half_height / height);
+  film.corner = view.forward - view.right * half_width - view.down * half_height;
+  film.right = view.right * (2 * half_width / width);
+  film.down = view.down * (2 * half_height / height);
   return film;
 }
 

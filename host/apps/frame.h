@@ -5,6 +5,7 @@
 
 #include "pipeline/trace.h"
 #include "scene/scene.h"
+#include "scene/view.h"
 
 namespace coppice {
 
@@ -21,9 +22,12 @@ SceneArrays scene_arrays(const Scene& scene);
 // The scene's warnings, a line each, to stderr.
 void print_warnings(const Scene& scene);
 
-// `camera`: eye, target and, if given, the vertical field of view in degrees; empty: one that frames the
-// scene.
-Film make_film(const Scene& scene, std::span<const float> camera, std::uint32_t width, std::uint32_t height,
+// The view that `camera` gives (see given_view), or where it is empty the scene's own or one that frames it.
+View choose_view(const Scene& scene, std::span<const double> camera, std::uint32_t width,
+                 std::uint32_t height);
+
+// Of that view.
+Film make_film(const Scene& scene, std::span<const double> camera, std::uint32_t width, std::uint32_t height,
                std::uint32_t samples);
 
 // A ray through the centre of each pixel, in the order of FILM_STRIP.

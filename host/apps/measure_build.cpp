@@ -37,6 +37,7 @@ BuildReport report_for(const Options& options, const Scene& scene, std::span<con
   report.scene = scene.name;
   report.triangles = scene.indices.size();
   report.inactive = count_inactive(scene);
+  report.offset = scene.offset;
   report.builder = options.builder;
   report.radius = options.radius;
   report.leaf_size = options.leaf_size;

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 
 #include "builders/registry.h"
 #include "interface/ploc.h"
 #include "pipeline/build.h"
+#include "scene/printable.h"
+#include "scene/scene.h"
+#include "scene/view.h"
 
 namespace coppice {
 namespace {
@@ -27,22 +29,29 @@ std::string parse_size(Options& options) {
   return "--size: '" + options.size + "' is not WxH with sides of 1 to " + std::to_string(max_side);
 }
 
-// Eye and target apart, all finite, the field of view in (0, 180).
-std::string check_camera(const Options& options) {
-  const std::vector<float>& camera = options.camera;
-  if (camera.empty()) return {};
-  const bool finite = std::ranges::all_of(camera, [](float x) { return std::isfinite(x); });
-  const bool apart = !std::equal(camera.begin(), camera.begin() + 3, camera.begin() + 3);
-  const bool opens = camera.size() < 7 || (camera[6] > 0 && camera[6] < 180);
-  return finite && apart && opens
-             ? std::string()
-             : "--camera: needs finite eye and target apart, and a field of view in 0 to 180";
+// Numbers between commas.
+std::string parse_camera(Options& options) {
+  if (options.camera_text.empty()) return {};
+  const std::string& text = options.camera_text;
+  options.camera.clear();
+  for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1) {
+    end = text.find(',', begin);
+    std::string word = text.substr(begin, end == std::string::npos ? end : end - begin);
+    word.erase(0, word.starts_with('+') ? 1 : 0);
+    double number = 0;
+    const auto [last, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    if (error != std::errc() || last != word.data() + word.size())
+      return "--camera: '" + printable(std::string_view(word)) + "' is no number";
+    options.camera.push_back(number);
+  }
+  const std::string complaint = complaint_about_view(options.camera);
+  return complaint.empty() ? std::string() : "--camera: " + complaint;
 }
 
 }  // namespace
 
 void check_view(Options& options) {
-  for (const std::string& error : {parse_size(options), check_camera(options)}) {
+  for (const std::string& error : {parse_size(options), parse_camera(options)}) {
     if (!error.empty()) throw CLI::ValidationError(error);
   }
 }
@@ -146,11 +155,13 @@ void add_size(CLI::App& command, Options& options) {
 void add_view(CLI::App& command, Options& options) {
   add_size(command, options);
   command
-      .add_option("--camera", options.camera,
-                  "eye, target and vertical field of view in degrees; default: frames the scene")
-      ->type_name("X,Y,Z,X,Y,Z[,FOV]")
-      ->delimiter(',')
-      ->expected(6, 7);
+      .add_option("--camera", options.camera_text,
+                  "eye, target, vertical field of view in degrees, and what is up in the picture, in the "
+                  "coordinates of the file; default: frames the scene")
+      ->type_name("X,Y,Z,X,Y,Z[,FOV][,X,Y,Z]");
+  command.add_option("--up", options.up, "the axis of the file that points up")
+      ->check(CLI::IsMember(std::vector<std::string>(UP_AXES.begin(), UP_AXES.end())))
+      ->capture_default_str();
 }
 
 void add_picture(CLI::App& command, Options& options) {

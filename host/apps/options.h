@@ -49,8 +49,9 @@ struct Options {
   std::string tracer = "gpu";
   std::string triangle_test = "auto";  // auto, fast, watertight
   std::string box_test = "auto";       // auto, fast, robust
-  std::vector<float>
-      camera;  // eye, target and, if given, the vertical field of view in degrees; empty: the scene's
+  std::string camera_text;             // as given; `camera` holds its numbers
+  std::vector<double> camera;          // see given_view; empty: the scene's
+  std::string up = "y";                // one of UP_AXES
 };
 
 // One function a command. Each returns the exit status, or throws InputError, DeviceError or LayoutError.

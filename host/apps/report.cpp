@@ -17,10 +17,13 @@ Spread spread_of(std::vector<double> values) {
   return {median, values.front(), values.back()};
 }
 
+Json coordinates(glm::dvec3 point) { return {point.x, point.y, point.z}; }
+
 Json to_json(const BuildReport& report) {
   Json json = {{"scene", report.scene},
                {"triangles", report.triangles},
                {"inactive", report.inactive},
+               {"offset", coordinates(report.offset)},
                {"builder", report.builder},
                {"radius", report.radius},
                {"morton_bits", report.morton_bits},

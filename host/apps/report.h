@@ -1,5 +1,6 @@
 #pragma once
 
+#include <glm/vec3.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,6 +23,7 @@ struct BuildReport {
   std::string scene, builder, device, driver;
   std::string variants;  // of stages on the device
   std::uint64_t triangles = 0, inactive = 0;
+  glm::dvec3 offset{0.0};  // that the reader subtracted from all coordinates of the file
   std::uint32_t radius = 0, morton_bits = 0, leaf_size = 0;
   Spread build_ms{}, wall_ms{};
   std::uint32_t runs = 0;
@@ -36,6 +38,7 @@ struct BuildReport {
   WideQuality wide{};                  // no nodes: no conversion
 };
 Json to_json(const BuildReport& report);
+Json coordinates(glm::dvec3 point);
 void print_build(const BuildReport& report);
 
 // Writes to the file, or to stdout for "-"; nothing for "". Throws InputError naming the file.

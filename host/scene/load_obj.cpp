@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "scene/obj_materials.h"
+#include "scene/obj_offset.h"
 #include "scene/obj_text.h"
 #include "scene/printable.h"
 #include "scene/triangulate.h"
@@ -45,12 +46,12 @@ tinyobj::callback_t callbacks() {
   return result;
 }
 
-}  // namespace
-
-Scene parse_obj(std::string text, const std::string& name,
-                const std::function<std::optional<std::string>(const std::string& name)>& read_mtl) {
-  ObjText obj = check_obj_text(std::move(text), name);
+// `offset` is subtracted from all coordinates.
+Scene parse_once(std::string text, const std::string& name, const ObjMaterials::ReadMtl& read_mtl,
+                 glm::dvec3 offset) {
+  ObjText obj = check_obj_text(std::move(text), name, offset);
   Scene scene;
+  scene.offset = offset;
   // Ours, not tinyobjloader's: it reads what is no number as 0, and rounds decimals less well.
   scene.positions = std::move(obj.positions);
   scene.warnings = std::move(obj.warnings);
@@ -70,6 +71,28 @@ Scene parse_obj(std::string text, const std::string& name,
   return scene;
 }
 
+// Reads again where the first reading finds that the scene is far from the origin, so that the coordinates of
+// all others are rounded once, as they are read. A third time where not even its place was seen the
+// first time, for float rounded all to one point.
+Scene parse(const std::function<std::string()>& text, const std::string& name,
+            const ObjMaterials::ReadMtl& read_mtl) {
+  Scene scene = parse_once(text(), name, read_mtl, glm::dvec3{0});
+  for (int again = 0; again < 2; ++again) {
+    const glm::dvec3 offset = find_offset(scene);
+    if (offset == glm::dvec3{0}) break;
+    scene = parse_once(text(), name, read_mtl, scene.offset + offset);
+  }
+  if (scene.offset != glm::dvec3{0}) scene.warnings.push_back(name + ": " + describe_offset(scene.offset));
+  return scene;
+}
+
+}  // namespace
+
+Scene parse_obj(std::string text, const std::string& name,
+                const std::function<std::optional<std::string>(const std::string& name)>& read_mtl) {
+  return parse([&] { return text; }, name, read_mtl);
+}
+
 Scene load_obj(const std::filesystem::path& path) {
   const auto read_mtl = [folder = path.parent_path()](const std::string& name) -> std::optional<std::string> {
     std::error_code error;
@@ -78,7 +101,7 @@ Scene load_obj(const std::filesystem::path& path) {
     if (!file.is_open()) return std::nullopt;
     return std::string(std::istreambuf_iterator<char>(file), {});
   };
-  Scene scene = parse_obj(read_obj_file(path), printable(path), read_mtl);
+  Scene scene = parse([&] { return read_obj_file(path); }, printable(path), read_mtl);
   scene.name = printable(path.stem());
   return scene;
 }

@@ -41,19 +41,28 @@ class Words {
   std::string_view rest_;
 };
 
-// The float nearest to a word: infinite where it is too large, NaN where the word is no number.
-float parse_coordinate(std::string_view word) {
+// The number nearest to a word: infinite where it is too large, NaN where the word is no number.
+template <class Number>
+Number parse_number(std::string_view word, Number (*parse_out_of_range)(const char*, char**)) {
   const char* begin = word.data();
   const char* const end = begin + word.size();
   if (begin != end && *begin == '+') ++begin;
-  float value = 0;
+  Number value = 0;
   const auto [parsed_end, error] = std::from_chars(begin, end, value);
   if (parsed_end != end || error == std::errc::invalid_argument) {
-    return std::numeric_limits<float>::quiet_NaN();
+    return std::numeric_limits<Number>::quiet_NaN();
   }
   // from_chars does not tell too large from too small; strtof does, and stops at the blank that ends the
   // word.
-  return error == std::errc::result_out_of_range ? std::strtof(begin, nullptr) : value;
+  return error == std::errc::result_out_of_range ? parse_out_of_range(begin, nullptr) : value;
+}
+
+// The float nearest to a word, less `offset`.
+float parse_coordinate(std::string_view word, double offset) {
+  if (offset == 0) return parse_number<float>(word, std::strtof);
+  const double value = parse_number<double>(word, std::strtod) - offset;
+  if (!(std::abs(value) > std::numeric_limits<float>::max())) return static_cast<float>(value);
+  return std::copysign(std::numeric_limits<float>::infinity(), value < 0 ? -1.0f : 1.0f);
 }
 
 constexpr std::array STATEMENTS =
@@ -62,7 +71,8 @@ constexpr std::array STATEMENTS =
 
 class ObjChecker {
  public:
-  ObjChecker(std::string name, ObjText& obj) : name_(std::move(name)), obj_(obj) {}
+  ObjChecker(std::string name, ObjText& obj, glm::dvec3 offset)
+      : name_(std::move(name)), obj_(obj), offset_(offset) {}
 
   void check() {
     std::string& text = obj_.text;
@@ -130,7 +140,7 @@ class ObjChecker {
     for (int axis = 0; axis < 3; ++axis) {
       const std::string_view word = words.next();
       if (word.empty()) fail("vertex with " + std::to_string(axis) + " coordinates, 3 are needed");
-      position[axis] = parse_coordinate(word);
+      position[axis] = parse_coordinate(word, offset_[axis]);
     }
     if (!std::isfinite(position.x) || !std::isfinite(position.y) || !std::isfinite(position.z)) {
       if (non_finite_count_++ == 0) first_non_finite_line_ = line_number_;
@@ -204,6 +214,7 @@ class ObjChecker {
 
   std::string name_;
   ObjText& obj_;
+  const glm::dvec3 offset_;
   std::size_t line_number_ = 0;         // of the first line of the statement, from 1
   std::size_t lines_in_statement_ = 1;  // more where lines are continued
   bool recognised_ = false;             // whether any statement was one of the format's
@@ -233,10 +244,10 @@ std::string read_obj_file(const std::filesystem::path& path) {
   return text;
 }
 
-ObjText check_obj_text(std::string text, const std::string& name) {
+ObjText check_obj_text(std::string text, const std::string& name, glm::dvec3 offset) {
   ObjText obj;
   obj.text = std::move(text);
-  ObjChecker(name, obj).check();
+  ObjChecker(name, obj, offset).check();
   return obj;
 }
 

@@ -19,7 +19,8 @@ struct ObjText {
 // The bytes of a file that may be an OBJ. Throws InputError as load_obj says.
 std::string read_obj_file(const std::filesystem::path& path);
 
-// Checks a text in one pass. `name` begins the messages. Throws InputError as load_obj says.
-ObjText check_obj_text(std::string text, const std::string& name);
+// Checks a text in one pass. `name` begins the messages. `offset` is subtracted from all coordinates, in
+// double, before they are rounded. Throws InputError as load_obj says.
+ObjText check_obj_text(std::string text, const std::string& name, glm::dvec3 offset = glm::dvec3{0.0});
 
 }  // namespace coppice

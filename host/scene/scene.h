@@ -1,9 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace coppice {
@@ -43,8 +46,11 @@ struct Camera {
 struct Scene {
   std::string name;
   std::vector<glm::vec3> positions;
-  int scale_exponent = 0;           // positions are the file's times 2^scale_exponent, see bring_into_range
-  std::vector<glm::uvec3> indices;  // one per triangle, into positions; always in range
+  // How they came from the file's coordinates, in this order (to_scene):
+  glm::dvec3 offset{0.0};                          // subtracted, see load_obj
+  glm::mat3 turn{1.0f};                            // then turned, see stand_up
+  int scale_exponent = 0;                          // and multiplied by 2^scale_exponent, see bring_into_range
+  std::vector<glm::uvec3> indices;                 // one per triangle, into positions; always in range
   std::vector<std::uint32_t> material_index;       // one per triangle, into materials; always in range
   std::vector<Material> materials = {Material{}};  // never empty
   std::optional<Camera> camera;                    // absent: frame_scene chooses one
@@ -61,10 +67,24 @@ std::uint32_t count_inactive(const Scene& scene);
 // tree; coordinates below 2^-179 of the largest are lost. Its camera comes along.
 void bring_into_range(Scene& scene);
 
-// The scene's own camera where it has one, else one that sees all active triangles from a three-quarter view
-// a bit above them. `aspect` is width / height, positive. Every member of the result is finite and position
-// differs from target, for every scene: empty, a single point, extents from 1e-38 to 3e38. (A camera cannot
-// stand outside of a scene that fills the range of float: there it stands at the edge of the range.)
+inline constexpr std::array<std::string_view, 6> UP_AXES = {"x", "y", "z", "-x", "-y", "-z"};
+
+// Turns the scene so that the axis `up`, one of UP_AXES, becomes +y. With z up, the file's y then points away
+// from the default camera, as north on a map. But for "y" the scene's own camera is dropped.
+void stand_up(Scene& scene, std::string_view up);
+
+// A point or a direction of the file, as its user knows it, in the scene, and a point of the scene in the
+// file.
+glm::dvec3 to_scene(const Scene& scene, glm::dvec3 point);
+glm::dvec3 direction_to_scene(const Scene& scene, glm::dvec3 direction);
+glm::dvec3 to_file(const Scene& scene, glm::dvec3 point);
+glm::dvec3 direction_to_file(const Scene& scene, glm::dvec3 direction);
+
+// The scene's own camera where it has one, else one that sees all triangles from a three-quarter view a bit
+// above them: active ones with an area, all active ones where none has. `aspect` is width / height,
+// positive. Every member of the result is finite and position differs from target, for every scene: empty, a
+// single point, extents from 1e-38 to 3e38, anywhere. (A camera cannot stand outside of a scene that fills
+// the range of float: there it stands at the edge of the range.)
 Camera frame_scene(const Scene& scene, float aspect);
 
 }  // namespace coppice

@@ -128,8 +128,9 @@ std::vector<SceneListing> list_hard_scenes() {
   return listings;
 }
 
-Scene open_scene(const std::string& spec) {
+Scene open_scene(const std::string& spec, std::string_view up) {
   Scene scene = open_unscaled(spec);
+  stand_up(scene, up);
   bring_into_range(scene);
   return scene;
 }

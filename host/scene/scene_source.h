@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scene/scene.h"
@@ -29,9 +30,10 @@ std::vector<SceneListing> list_hard_scenes();
 
 // Opens what the user named: the path of an .obj file, "grove", "scatter[:N]", "terrain[:N]" or
 // "hard:CASE[:N[:SEED]]", with SEED a decimal number below 2^64, 1 if not given. A built-in name wins over a
-// file of the same name ("./grove" names the file). The scene is brought into range (bring_into_range).
+// file of the same name ("./grove" names the file). The scene is stood up (stand_up) and brought into range
+// (bring_into_range).
 // Throws InputError where nothing answers to the name, N or SEED is out of range, or the file cannot be
 // loaded.
-Scene open_scene(const std::string& spec);
+Scene open_scene(const std::string& spec, std::string_view up = "y");
 
 }  // namespace coppice

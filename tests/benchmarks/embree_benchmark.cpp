@@ -23,7 +23,7 @@ struct BenchmarkRays {
 };
 
 BenchmarkRays rays_of(const Scene& scene, std::span<const Triangle> triangles,
-                      std::span<const float> camera) {
+                      std::span<const double> camera) {
   BenchmarkRays rays{rays_through(make_film(scene, camera, 1024, 768, 1)), {}};
   const Bvh bvh = find_cpu_builder("ploc").build(triangles, {});
   Device device;
@@ -42,7 +42,7 @@ void trace(benchmark::State& state, const EmbreeScene& scene, const std::vector<
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(rays.size()));
 }
 
-void run(const std::string& name, const std::vector<float>& camera) {
+void run(const std::string& name, const std::vector<double>& camera) {
   const Scene scene = open_scene(name);
   const SceneArrays arrays = scene_arrays(scene);
   const BenchmarkRays rays = rays_of(scene, arrays.triangles, camera);
@@ -63,8 +63,8 @@ void run(const std::string& name, const std::vector<float>& camera) {
 
 int main(int argc, char** argv) try {
   benchmark::Initialize(&argc, argv);
-  std::vector<float> camera;
-  for (int i = 2; i < argc; ++i) camera.push_back(std::strtof(argv[i], nullptr));
+  std::vector<double> camera;
+  for (int i = 2; i < argc; ++i) camera.push_back(std::strtod(argv[i], nullptr));
   if (argc < 2 || (argc != 2 && argc != 8 && argc != 9)) {
     std::fprintf(stderr, "usage: embree_benchmarks SCENE [EYE TARGET [FOV]]\n");
     return 2;

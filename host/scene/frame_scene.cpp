@@ -1,0 +1,63 @@
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/trigonometric.hpp>
+#include <limits>
+
+#include "scene/bounds.h"
+#include "scene/scene.h"
+
+namespace coppice {
+namespace {
+
+// How far from the centre, along `toward_camera`, all triangles that count come into view.
+template <class Counts>
+double viewing_distance(const Scene& scene, Counts counts, glm::dvec3 centre, glm::dvec3 toward_camera,
+                        double tan_x, double tan_y) {
+  const glm::dvec3 right = glm::normalize(glm::cross(glm::dvec3{0, 1, 0}, toward_camera));
+  const glm::dvec3 up = glm::cross(toward_camera, right);
+  double distance = 0;
+  for (const glm::uvec3 triangle : scene.indices) {
+    if (!counts(scene, triangle)) continue;
+    for (int corner = 0; corner < 3; ++corner) {
+      const glm::dvec3 p = glm::dvec3{scene.positions[triangle[corner]]} - centre;
+      const double sideways =
+          std::max(std::abs(glm::dot(p, right)) / tan_x, std::abs(glm::dot(p, up)) / tan_y);
+      distance = std::max(distance, glm::dot(p, toward_camera) + sideways);
+    }
+  }
+  return distance;
+}
+
+glm::vec3 clamp_to_float(glm::dvec3 p) {
+  const double limit = std::numeric_limits<float>::max();
+  return glm::vec3{glm::clamp(p, -limit, limit)};
+}
+
+}  // namespace
+
+Camera frame_scene(const Scene& scene, float aspect) {
+  if (scene.camera) return *scene.camera;
+
+  Camera camera;
+  const glm::dvec3 toward_camera = glm::normalize(glm::dvec3{0.55, 0.42, 0.83});
+  const double tan_y = std::tan(glm::radians(static_cast<double>(camera.vertical_fov_degrees)) / 2);
+  const Bounds bounds = visible_bounds(scene);
+  const glm::dvec3 centre = bounds.centre();
+  const auto distance_of = [&](auto counts) {
+    return 1.05 * viewing_distance(scene, counts, centre, toward_camera, tan_y * aspect, tan_y);
+  };
+  double distance = distance_of(is_visible);
+  if (distance == 0) distance = distance_of(is_active);
+  if (distance == 0) distance = 1;  // nothing, or a single point: any distance will do
+  // Far from the origin, or near the least normal float, the step back must survive rounding to float.
+  distance = std::max({distance, 0x1p-21 * bounds.reach(), 4.0 * std::numeric_limits<float>::min()});
+
+  camera.target = clamp_to_float(centre);
+  camera.position = clamp_to_float(centre + distance * toward_camera);
+  // At the corner of float's range there is no room to step back: look from the other side.
+  if (camera.position == camera.target) camera.position = clamp_to_float(centre - distance * toward_camera);
+  return camera;
+}
+
+}  // namespace coppice
