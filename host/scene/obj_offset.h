@@ -15,7 +15,7 @@ namespace coppice {
 //
 // The positions may be rounded, even so that no triangle has an area: then the result is near enough that
 // once it has been subtracted another call finds what is left.
-inline constexpr double FAR = 64;  // float still tells 2^18 places apart on that side
+inline constexpr double FAR = 16;  // float then tells 2^20 places apart on that side
 glm::dvec3 find_offset(const Scene& scene);
 
 // What a user is told of it.
