@@ -1,6 +1,9 @@
 // The command line as others' scripts call it: exit status, one clear line for bad input, nothing
 // half-written, JSON.
+#include <glm/vec3.hpp>
+#include <iomanip>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "support/command.h"
 
@@ -38,11 +41,70 @@ TEST_F(Command, BadFlagsAreRefusedWithStatus2) {
                {"render one.obj -o out.png --size 64", "--size"},
                {"render one.obj -o out.png --spp 0", "--spp"},
                {"render one.obj -o out.png --camera 1,2", "--camera"},
+               {"render one.obj -o out.png --camera 1,2,3,0,0,x", "'x' is no number"},
+               {"render one.obj -o out.png --camera 1,2,3,0,0,inf", "--camera: all numbers"},
+               {"render one.obj -o out.png --camera 1,2,3,1,2,3", "--camera: eye and target"},
+               {"render one.obj -o out.png --camera 1,2,3,0,0,0,181", "--camera: the field of view"},
+               {"render one.obj -o out.png --camera 0,5,0,0,0,0,40,0,1,0", "--camera: up is along"},
+               {"render one.obj -o out.png --up w", "--up"},
+               {"build one.obj --up z", "--up"},
                {"render one.obj two.obj -o out.png", "two.obj"},
                {"build one.obj --runs 0", "--runs"},
                {"nonsense", "nonsense"},
                {"", "command"}};
   for (const auto& c : cases) expect_refused(c.arguments, 2, c.part);
+}
+
+// A house of 8 m, in y up and z up, here and in map coordinates, by itself and by a camera in those.
+TEST_F(Command, AHouseLooksTheSameWhereverItStands) {
+  const auto house = [](glm::dvec3 at, bool z_up) {
+    std::ostringstream text;
+    text << std::setprecision(17);
+    for (const glm::dvec3 p : {glm::dvec3{0, 0, 0},
+                               {8, 0, 0},
+                               {8, 3, 0},
+                               {0, 3, 0},
+                               {4, 5.25, 0},
+                               {4, 5.25, 6},
+                               {0, 0, 6},
+                               {8, 0, 6},
+                               {8, 3, 6},
+                               {0, 3, 6}}) {
+      const glm::dvec3 turned = z_up ? glm::dvec3{p.x, -p.z, p.y} : p;
+      text << "v " << turned.x + at.x << ' ' << turned.y + at.y << ' ' << turned.z + at.z << '\n';
+    }
+    text << "f 1 2 3 5 4\nf 7 8 9 6 10\nf 1 4 10 7\nf 2 8 9 3\nf 4 5 6 10\nf 5 3 9 6\n";
+    return text.str();
+  };
+  write("here.obj", house({0, 0, 0}, false));
+  write("here_z.obj", house({0, 0, 0}, true));
+  write("utm.obj", house({512345.25, 121.5, -5412345.75}, false));
+  write("utm_z.obj", house({512345.25, 5412345.75, 121.5}, true));
+  const auto render = [](const std::string& arguments) {
+    const Outcome outcome =
+        run("render --size 100x75 --builder lbvh --tracer cpu -o out.png --json - " + arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return nlohmann::json::parse(outcome.out);
+  };
+  const nlohmann::json here = render("here.obj");
+  EXPECT_GT(here["hits"], 1000);
+  EXPECT_EQ(here["offset"], nlohmann::json({0, 0, 0}));
+  EXPECT_EQ(render("here_z.obj --up z")["image_hash"], here["image_hash"]);
+  const nlohmann::json utm = render("utm.obj");
+  EXPECT_EQ(utm["hits"], here["hits"]);
+  EXPECT_EQ(utm["offset"], nlohmann::json({512352, 128, -5412344}));
+  EXPECT_EQ(utm["build"]["offset"], utm["offset"]);
+  EXPECT_NEAR(utm["camera"]["eye"][2], here["camera"]["eye"][2].get<double>() - 5412345.75, 1e-5);
+  EXPECT_EQ(render("utm_z.obj --up z")["hits"], here["hits"]);
+
+  EXPECT_EQ(
+      render("--camera 4,2,40,4,2.5,3,20,0.1,1,0 here.obj")["hits"],
+      render("--camera 512349.25,123.5,-5412305.75,512349.25,124,-5412342.75,20,0.1,1,0 utm.obj")["hits"]);
+  // From straight above, north up on the map.
+  const nlohmann::json above =
+      render("utm_z.obj --up z --camera 512349.25,5412342.75,160,512349.25,5412342.75,121.5");
+  EXPECT_GT(above["hits"], 100);
+  EXPECT_NEAR(above["camera"]["up"][1], 1, 1e-12);
 }
 
 TEST_F(Command, UnknownDeviceAndUnwritableOutputAreNamed) {
