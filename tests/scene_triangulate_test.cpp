@@ -149,11 +149,11 @@ TEST(Triangulate, SearchesNoLongerThanBoundedForWhatIsNotThere) {
 Outline random_outline(Random& random) {
   switch (random.below(4)) {
     case 0:
-      return star_outline(random, 20);
+      return star_outline(random, 3 + random.below(18));
     case 1:
       return blocks_outline(random, 40);
     case 2:
-      return holes_outline(random, 4);
+      return holes_outline(random, random.below(5));
     default:
       return comb_outline(random, 1 + random.below(5));
   }

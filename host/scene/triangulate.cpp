@@ -14,7 +14,7 @@ namespace coppice {
 namespace {
 
 // Up to so many corners ears are cut first, which makes rounder triangles than the sweep does.
-constexpr std::size_t FEW_CORNERS = 64;
+constexpr std::size_t FEW_CORNERS = 256;
 
 // The corners on the two axes on which the polygon's area is largest, in the order that makes it wind to the
 // left.

@@ -25,10 +25,10 @@ inline std::int64_t twice_area(const Outline& outline) {
   return sum;
 }
 
-// Corners all around the origin, which sees all of them.
-inline Outline star_outline(Random& random, std::uint32_t most_corners) {
+// Corners all around the origin, which sees all of them: about as many as said, for some hide others.
+inline Outline star_outline(Random& random, std::uint32_t corners) {
   Outline outline = {{1000, 0}, {-500, 870}, {-500, -870}};
-  for (std::uint32_t i = random.below(most_corners - 2); i > 0; --i) {
+  for (std::uint32_t i = 3; i < corners; ++i) {
     const int x = static_cast<int>(random.below(2001)) - 1000,
               y = static_cast<int>(random.below(2001)) - 1000;
     if (x != 0 || y != 0) outline.emplace_back(x, y);
@@ -107,8 +107,8 @@ inline Outline blocks_outline(Random& random, std::uint32_t most_blocks) {
 
 // A long rectangle with rectangular holes side by side, each bound to the lower side by an edge there and
 // back.
-inline Outline holes_outline(Random& random, std::uint32_t most_holes) {
-  const int count = static_cast<int>(random.below(most_holes + 1));
+inline Outline holes_outline(Random& random, std::uint32_t holes) {
+  const int count = static_cast<int>(holes);
   Outline outline = {{0, 0}};
   for (int i = 0; i < count; ++i) {
     const int x = 20 * i + 2 + static_cast<int>(random.below(8)), y = 1 + static_cast<int>(random.below(40));
