@@ -107,6 +107,16 @@ TEST_F(LoadObj, KeepsDegenerateTriangles) {
   EXPECT_EQ(load(TRIANGLE + "f 1 1 1\nf 1 2 1\n").indices.size(), 2u);
 }
 
+TEST_F(LoadObj, PolygonsThatCrossThemselvesAreCountedInAWarning) {
+  const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+  EXPECT_TRUE(load(square + "f 1 2 3 4\nf 1 2 2 3 4\nf 1 3 1 2 3 4\n").warnings.empty());
+  const Scene scene = load(square + "f 1 3 2 4\nf 1 2 3 4\nf 1 2 4 3\n");
+  EXPECT_EQ(scene.indices.size(), 6u);
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_NE(scene.warnings[0].find("2 polygons with edges that cross"), std::string::npos)
+      << scene.warnings[0];
+}
+
 TEST_F(LoadObj, NoFacesGiveAnEmptySceneAndAWarning) {
   const Scene scene = load(TRIANGLE);
   EXPECT_TRUE(scene.indices.empty());
