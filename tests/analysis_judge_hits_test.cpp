@@ -234,11 +234,11 @@ TEST(JudgeHits, AllowsHitsOfASegmentWhereTheRayPassesIt) {
   };
   EXPECT_EQ(false_of(segment, ray, {1, 0, 1, 0}), 0u);
   EXPECT_EQ(false_of(segment, ray, {1, 0, 0, 0.25f}), 0u);
-  EXPECT_EQ(false_of(segment, ray, {1 + 0x1p-19f, 0, 1, 0}), 0u);
+  EXPECT_EQ(false_of(segment, ray, {1 + 0x1p-18f, 0, 1, 0}), 0u);
   EXPECT_EQ(false_of(segment, ray, MISS), 0u);
   EXPECT_EQ(false_of(segment, ray, {1, 0, 0.5f, 0}), 1u);          // elsewhere on the segment
-  EXPECT_EQ(false_of(segment, ray, {1 + 0x1p-17f, 0, 1, 0}), 1u);  // beside it along the ray
-  EXPECT_EQ(false_of(segment, down_at(0.25f, 0.25f + 0x1p-17f), {1, 0, 1, 0}), 1u);  // and across
+  EXPECT_EQ(false_of(segment, ray, {1 + 0x1p-16f, 0, 1, 0}), 1u);  // beside it along the ray
+  EXPECT_EQ(false_of(segment, down_at(0.25f, 0.25f + 0x1p-16f), {1, 0, 1, 0}), 1u);  // and across
   EXPECT_EQ(false_of(segment, down_at(2, 2), {1, 0, 0, 1}), 1u);
   EXPECT_EQ(false_of(segment, ray, {1, 0, std::numeric_limits<float>::quiet_NaN(), 0}), 1u);
   // An area that double does not tell from none.

@@ -105,8 +105,8 @@ bool HitRoom::admits_on_segment(const Hit& hit) const {
   if (!are_shares(hit.u, hit.v)) return false;
   const dvec3 point = a_ + double{hit.u} * to_b_ + double{hit.v} * to_c_;
   const double depth = glm::dot(point, along_);
-  return glm::length(point - depth * along_) <= delta &&
-         std::abs(depth - hit.t * length) <= delta + FLUSHED * length;
+  return glm::length(point - depth * along_) <= 2 * delta &&
+         std::abs(depth - hit.t * length) <= 2 * delta + FLUSHED * length;
 }
 
 }  // namespace coppice

@@ -40,10 +40,10 @@ namespace coppice {
 //     from the line's meeting with the plane.
 // A triangle whose area is exactly 0, or whose sliver is above 2^40 so that double does not tell its plane,
 // is a segment: rounding may give it an area, and around it the mesh has a gap of that size, which its hit
-// closes. Such a hit is false unless the point at (u, v) is within delta of the line and its depth within
-// delta of that of t, which is more than is asked of triangles with an area. A ray that lies in a plane
-// exactly is not told apart from one that lies in it nearly: after rounding corner
-// - origin no test could, so a hit there is no false one if it keeps the rest.
+// closes. Such a hit is false unless the point at (u, v) is within 2 * delta of the line and its depth within
+// 2 * delta of that of t (docs/numerics.md, "Triangle test").
+// A ray that lies in a plane exactly is not told apart from one that lies in it nearly: after rounding
+// corner - origin no test could, so a hit there is no false one if it keeps the rest.
 //
 // A triangle is a CLEAR hit if the line meets it with border > delta, which means that the line still meets
 // it wherever its corners are moved by up to delta (the winding number of its outline, seen along the ray,
