@@ -214,10 +214,38 @@ TEST(JudgeHits, RefusesHitsOfWhatCannotBeHit) {
   Triangle inactive = FLOOR;
   inactive.c.y = INFINITE;
   EXPECT_EQ(judge_one({inactive}, down_at(0.25f, 0.25f), hit).false_hits, 1u);
+  for (const Triangle& without_three : {Triangle{vec3(0), vec3(0), vec3(1, 1, 0)},
+                                        {vec3(0), vec3(1, 1, 0), vec3(0)},
+                                        {vec3(1, 1, 0), vec3(0), vec3(0)}}) {
+    const HitVerdicts verdicts = judge_one({without_three}, down_at(0.25f, 0.25f), {1, 0, 0.25f, 0.25f});
+    EXPECT_EQ(verdicts.false_hits, 1u);
+    EXPECT_EQ(verdicts.false_on_degenerate, 1u);
+  }
+}
+
+// Rounding gives it an area, and around it a mesh has a gap of that size.
+TEST(JudgeHits, AllowsHitsOfASegmentWhereTheRayPassesIt) {
   const Triangle segment{vec3(0), vec3(0.25f, 0.25f, 0), vec3(1, 1, 0)};
-  const HitVerdicts verdicts = judge_one({segment}, down_at(0.25f, 0.25f), {1, 0, 1, 0});
-  EXPECT_EQ(verdicts.false_hits, 1u);
-  EXPECT_EQ(verdicts.false_on_degenerate, 1u);
+  const Ray ray = down_at(0.25f, 0.25f);
+  const auto false_of = [&](const Triangle& triangle, const Ray& one, const Hit& hit) {
+    const HitVerdicts verdicts = judge_one({triangle}, one, hit);
+    EXPECT_EQ(verdicts.missed + verdicts.missed_at_edges, 0u);
+    return verdicts.false_hits;
+  };
+  EXPECT_EQ(false_of(segment, ray, {1, 0, 1, 0}), 0u);
+  EXPECT_EQ(false_of(segment, ray, {1, 0, 0, 0.25f}), 0u);
+  EXPECT_EQ(false_of(segment, ray, {1 + 0x1p-18f, 0, 1, 0}), 0u);
+  EXPECT_EQ(false_of(segment, ray, MISS), 0u);
+  EXPECT_EQ(false_of(segment, ray, {1, 0, 0.5f, 0}), 1u);          // elsewhere on the segment
+  EXPECT_EQ(false_of(segment, ray, {1 + 0x1p-16f, 0, 1, 0}), 1u);  // beside it along the ray
+  EXPECT_EQ(false_of(segment, down_at(0.25f, 0.25f + 0x1p-16f), {1, 0, 1, 0}), 1u);  // and across
+  EXPECT_EQ(false_of(segment, down_at(2, 2), {1, 0, 0, 1}), 1u);
+  EXPECT_EQ(false_of(segment, ray, {1, 0, std::numeric_limits<float>::quiet_NaN(), 0}), 1u);
+  // An area that double does not tell from none.
+  const Triangle nearly{vec3(0), vec3(0.25f, 0.25f, 1e-30f), vec3(1, 1, 0)};
+  ASSERT_FALSE(is_exactly_degenerate(nearly));
+  EXPECT_EQ(false_of(nearly, ray, {1, 0, 1, 0}), 0u);
+  EXPECT_EQ(false_of(nearly, ray, {1, 0, 0.5f, 0}), 1u);
 }
 
 // Along a plane seen almost edge-on t is known badly, but not beyond the triangle.

@@ -34,6 +34,8 @@ double from_segment(const dvec2& a, const dvec2& b) {
   return glm::length(a + share * edge);
 }
 
+bool are_shares(double u, double v) { return u >= 0 && v >= 0 && u <= 1 && v <= 1 && u + v <= 1 + 0x1p-20; }
+
 double side_of(const dvec2& a, const dvec2& b) { return a.x * b.y - a.y * b.x; }
 
 }  // namespace
@@ -94,9 +96,17 @@ bool HitRoom::admits_distance(double t) const {
 }
 
 bool HitRoom::admits_coordinates(double u, double v) const {
-  if (!(u >= 0 && v >= 0 && u <= 1 && v <= 1 && u + v <= 1 + 0x1p-20)) return false;
+  if (!are_shares(u, v)) return false;
   const dvec3 point = a_ + u * to_b_ + v * to_c_;
   return !(glm::length(point - plane_depth_ * along_) > 2 * room() + delta);
+}
+
+bool HitRoom::admits_on_segment(const Hit& hit) const {
+  if (!are_shares(hit.u, hit.v)) return false;
+  const dvec3 point = a_ + double{hit.u} * to_b_ + double{hit.v} * to_c_;
+  const double depth = glm::dot(point, along_);
+  return glm::length(point - depth * along_) <= 2 * delta &&
+         std::abs(depth - hit.t * length) <= 2 * delta + FLUSHED * length;
 }
 
 }  // namespace coppice

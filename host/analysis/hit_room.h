@@ -9,8 +9,11 @@ namespace coppice {
 // How well a hit of a triangle is defined in single precision: the quantities of judge_hits.h, in double.
 class HitRoom {
  public:
-  // The triangle is active and has an area.
+  // The triangle is active.
   HitRoom(const ExactLine& line, const Triangle& triangle);
+
+  // Whether the triangle is a segment as far as double can tell. Then only admits_on_segment says something.
+  bool is_segment() const { return !(sliver_ <= LARGEST_SLIVER); }
 
   // All t that may be reported for the triangle.
   Interval distances() const;
@@ -19,6 +22,9 @@ class HitRoom {
   bool admits_distance(double t) const;
   bool admits_coordinates(double u, double v) const;
 
+  // Whether the point at (u, v) is where the ray passes, and t is its distance.
+  bool admits_on_segment(const Hit& hit) const;
+
   double reach;   // largest |corner - origin|, maximum norm
   double delta;   // the room for rounding, a length
   double gap;     // from the line to the triangle
@@ -26,14 +32,16 @@ class HitRoom {
   double length;  // of the direction
 
  private:
+  static constexpr double LARGEST_SLIVER = 0x1p40;
+
   double room() const;
 
-  glm::dvec3 along_;               // unit direction
-  glm::dvec3 a_, to_b_, to_c_;     // a from the origin, and two edges
-  glm::dvec3 normal_;              // unit
-  double slope_;                   // |cosine| between the direction and the normal
-  double sliver_;                  // longest edge squared / twice the area, at least 1
-  double plane_depth_;             // where the line meets the plane; 0 where it never does
+  glm::dvec3 along_;            // unit direction
+  glm::dvec3 a_, to_b_, to_c_;  // a from the origin, and two edges
+  glm::dvec3 normal_;           // unit
+  double slope_;                // |cosine| between the direction and the normal
+  double sliver_;       // longest edge squared / twice the area, at least 1; infinite or NaN without one
+  double plane_depth_;  // where the line meets the plane; 0 where it never does
   double low_depth_, high_depth_;  // of the corners, widened by delta
 };
 

@@ -13,11 +13,19 @@ namespace coppice {
 namespace {
 
 constexpr double NEVER = std::numeric_limits<double>::infinity();
-constexpr std::string_view ON_DEGENERATE = "on a triangle without area";
 
-// Of a ray that can hit, on a triangle that is active and has an area.
-std::string_view why_false_there(const ExactLine& line, const HitRoom& room, const Hit& hit) {
+bool has_equal_corners(const Triangle& triangle) {
+  return triangle.a == triangle.b || triangle.b == triangle.c || triangle.c == triangle.a;
+}
+
+// Of a ray that can hit, on a triangle that is active.
+std::string_view why_false_there(const ExactLine& line, const Triangle& triangle, const Hit& hit) {
   if (!std::isfinite(hit.t) || hit.t < line.ray.t_min || hit.t > line.ray.t_max) return "t out of range";
+  if (has_equal_corners(triangle)) return "on a triangle of fewer than three corners";
+  const HitRoom room(line, triangle);
+  if (room.is_segment() || is_exactly_degenerate(triangle)) {
+    return room.admits_on_segment(hit) ? "" : "off the segment that the triangle is";
+  }
   if (room.gap > room.delta) return "the line passes beside the triangle";
   if (!room.admits_distance(hit.t)) return "t is wrong";
   if (!room.admits_coordinates(hit.u, hit.v)) return "u or v is wrong";
@@ -99,7 +107,8 @@ class Judge {
     const std::string_view reason = is_reported ? why_false(triangles_, ray, hit) : std::string_view();
     if (!reason.empty()) {
       ++verdicts.false_hits;
-      verdicts.false_on_degenerate += reason == ON_DEGENERATE;
+      verdicts.false_on_degenerate +=
+          hit.triangle < triangles_.size() && is_exactly_degenerate(triangles_[hit.triangle]);
       keep_first(verdicts.example_false, i);
     }
     if (!can_hit(ray)) return;
@@ -151,9 +160,7 @@ std::string_view why_false(std::span<const Triangle> triangles, const Ray& ray, 
   if (!can_hit(ray)) return "the ray hits nothing";
   const Triangle& triangle = triangles[hit.triangle];
   if (!is_active(triangle)) return "on an inactive triangle";
-  if (is_exactly_degenerate(triangle)) return ON_DEGENERATE;
-  const ExactLine line(ray);
-  return why_false_there(line, HitRoom(line, triangle), hit);
+  return why_false_there(ExactLine(ray), triangle, hit);
 }
 
 HitVerdicts& HitVerdicts::operator+=(const HitVerdicts& other) {

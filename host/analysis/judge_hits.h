@@ -28,7 +28,7 @@ namespace coppice {
 // denormal t may be flushed to 0.
 //
 // A reported hit is FALSE
-//   - on a bad index or an inactive triangle, or on one whose exact area is 0;
+//   - on a bad index, an inactive triangle, or one with two equal corners;
 //   - of a ray that hits nothing (can_hit);
 //   - if its t is not finite or not in [t_min, t_max];
 //   - if gap > delta;
@@ -38,8 +38,12 @@ namespace coppice {
 //   - if u or v is not in [0, 1] or u + v > 1 + 2^-20, or the point at (u, v) is farther than 2 * room +
 //   delta
 //     from the line's meeting with the plane.
-// A ray that lies in a plane exactly is not told apart from one that lies in it nearly: after rounding corner
-// - origin no test could, so a hit there is no false one if it keeps the rest.
+// A triangle whose area is exactly 0, or whose sliver is above 2^40 so that double does not tell its plane,
+// is a segment: rounding may give it an area, and around it the mesh has a gap of that size, which its hit
+// closes. Such a hit is false unless the point at (u, v) is within 2 * delta of the line and its depth within
+// 2 * delta of that of t (docs/numerics.md, "Triangle test").
+// A ray that lies in a plane exactly is not told apart from one that lies in it nearly: after rounding
+// corner - origin no test could, so a hit there is no false one if it keeps the rest.
 //
 // A triangle is a CLEAR hit if the line meets it with border > delta, which means that the line still meets
 // it wherever its corners are moved by up to delta (the winding number of its outline, seen along the ray,

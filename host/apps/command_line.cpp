@@ -92,6 +92,11 @@ void add_stability(CLI::App& command, Options& options) {
         return text.starts_with('-') ? "'" + text + "' is no number from 0 to 2^64 - 1" : std::string();
       })
       ->capture_default_str();
+  command
+      .add_option("--seeds", options.seed_count,
+                  "so many seeds from --seed on; of more than one only rows that fail are shown")
+      ->check(CLI::Range(1u, 1000000u))
+      ->capture_default_str();
   add_ploc(command, options);
   add_device(command, options);
   add_trace_events(command, options);

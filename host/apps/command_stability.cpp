@@ -18,6 +18,8 @@ std::string name_of(const IntersectionVariant& variant) {
 
 Json to_json(const RayResult& result) {
   const HitVerdicts& verdicts = result.verdicts;
+  Json examples = Json::array();
+  for (const RayExample& example : result.examples) examples.push_back(to_json(example));
   return {{"rays", verdicts.rays},
           {"hits", verdicts.hits},
           {"missed", verdicts.missed},
@@ -30,7 +32,8 @@ Json to_json(const RayResult& result) {
           {"worst_t_ulps", verdicts.worst_t_ulps},
           {"worst_t_scaled", verdicts.worst_t_scaled},
           {"worst_uv_ulps", verdicts.worst_uv_ulps},
-          {"example", result.example}};
+          {"example", result.example()},
+          {"examples", std::move(examples)}};
 }
 
 Json to_json(const VariantResult& result) {
@@ -45,6 +48,7 @@ Json to_json(const VariantResult& result) {
 
 Json to_json(const StabilityCase& result) {
   Json json = {{"case", result.scene},
+               {"seed", result.seed},
                {"triangles", result.triangles},
                {"rounds", result.rounds},
                {"rounds_bound", result.rounds_bound},
@@ -66,6 +70,7 @@ Json to_json(const LeakCount& leak) {
           {"box_test", leak.variant->box},
           {"rays", leak.rays},
           {"leaks", leak.leaks},
+          {"example", leak.example},
           {"seconds", leak.seconds}};
 }
 
@@ -73,6 +78,22 @@ void print_header() {
   std::printf("%-25s %9s %9s %5s %-5s %-4s  %-19s %6s %6s %6s %6s %6s %9s %9s %-4s\n", "case", "triangles",
               "rounds", "depth", "valid", "bits", "triangle + box", "rays", "missed", "edges", "leaks",
               "false", "t ulp", "uv ulp", "bits");
+}
+
+// What makes the case fail: rays of the accurate tests, and bits of all of them.
+void print_failures(const StabilityCase& result) {
+  for (const VariantResult& variant : result.variants) {
+    const bool is_accurate = &variant == &result.variants.back();
+    for (const RayResult& kind : variant.kinds) {
+      for (const RayExample& example : kind.examples) {
+        const bool fails =
+            example.failure == OTHER_BITS || (is_accurate && example.failure != MISSED_AT_EDGE);
+        if (!fails) continue;
+        std::printf("  seed %llu, %s, %s\n", static_cast<Count>(result.seed),
+                    name_of(*variant.variant).c_str(), described(example).c_str());
+      }
+    }
+  }
 }
 
 void print_case(const StabilityCase& result) {
@@ -97,37 +118,48 @@ void print_case(const StabilityCase& result) {
                 variant.bits_equal ? "same" : "DIFF");
     if (!variant.error.empty()) std::printf("  %s\n", variant.error.c_str());
   }
-  for (const RayResult& kind : result.variants.back().kinds) {
-    if (!kind.example.empty())
-      std::printf("  %s: %s\n", std::string(kind.kind).c_str(), kind.example.c_str());
-  }
+  print_failures(result);
   if (!result.fault.empty()) std::printf("  %s\n", result.fault.c_str());
   if (!result.difference.empty()) std::printf("  first difference: %s\n", result.difference.c_str());
+  if (!result.same_as_builder) std::printf("  the tree is not that of the builder on the host\n");
 }
 
-// Sums over the cases, by kind of ray.
-void print_kinds(std::span<const StabilityCase> cases) {
-  std::printf("\n%-19s %-17s %8s %8s %7s %7s %7s %7s\n", "triangle + box", "rays", "number", "hits", "missed",
-              "edges", "leaks", "false");
-  for (std::size_t v = 0; v < intersection_variants().size(); ++v) {
-    std::vector<RayResult> sums;
-    for (const StabilityCase& one : cases) {
+// Sums over cases and seeds, by variant and kind of ray.
+class KindSums {
+ public:
+  void add(const StabilityCase& one) {
+    for (std::size_t v = 0; v < sums_.size(); ++v) {
       for (const RayResult& kind : one.variants[v].kinds) {
-        auto sum = std::ranges::find(sums, kind.kind, &RayResult::kind);
-        if (sum == sums.end()) sum = sums.insert(sums.end(), {kind.kind, {}});
+        auto sum = std::ranges::find(sums_[v], kind.kind, &RayResult::kind);
+        if (sum == sums_[v].end()) sum = sums_[v].insert(sums_[v].end(), {kind.kind, {}});
         sum->verdicts += kind.verdicts;
         sum->leaks += kind.leaks;
       }
     }
-    for (const RayResult& sum : sums) {
-      std::printf("%-19s %-17s %8llu %8llu %7llu %7llu %7llu %7llu\n",
-                  &sum == &sums.front() ? name_of(intersection_variants()[v]).c_str() : "",
-                  std::string(sum.kind).c_str(), static_cast<Count>(sum.verdicts.rays),
-                  static_cast<Count>(sum.verdicts.hits), static_cast<Count>(sum.verdicts.missed),
-                  static_cast<Count>(sum.verdicts.missed_at_edges), static_cast<Count>(sum.leaks),
-                  static_cast<Count>(sum.verdicts.false_hits));
+  }
+
+  void print() const {
+    std::printf("\n%-19s %-17s %8s %8s %7s %7s %7s %7s\n", "triangle + box", "rays", "number", "hits",
+                "missed", "edges", "leaks", "false");
+    for (std::size_t v = 0; v < sums_.size(); ++v) {
+      for (const RayResult& sum : sums_[v]) {
+        std::printf("%-19s %-17s %8llu %8llu %7llu %7llu %7llu %7llu\n",
+                    &sum == &sums_[v].front() ? name_of(intersection_variants()[v]).c_str() : "",
+                    std::string(sum.kind).c_str(), static_cast<Count>(sum.verdicts.rays),
+                    static_cast<Count>(sum.verdicts.hits), static_cast<Count>(sum.verdicts.missed),
+                    static_cast<Count>(sum.verdicts.missed_at_edges), static_cast<Count>(sum.leaks),
+                    static_cast<Count>(sum.verdicts.false_hits));
+      }
     }
   }
+
+ private:
+  std::vector<std::vector<RayResult>> sums_ =
+      std::vector<std::vector<RayResult>>(intersection_variants().size());
+};
+
+bool fails(const LeakCount& leak) {
+  return leak.variant == &intersection_variants().back() && leak.leaks > 0;
 }
 
 void print_leaks(std::span<const LeakCount> leaks) {
@@ -138,6 +170,7 @@ void print_leaks(std::span<const LeakCount> leaks) {
     std::printf("%-12s %7g  %-19s %11llu %9llu %10.2g %8.2f\n", leak.mesh.c_str(), leak.scale,
                 name_of(*leak.variant).c_str(), static_cast<Count>(leak.rays), static_cast<Count>(leak.leaks),
                 static_cast<double>(leak.leaks) / rays, rays / leak.seconds / 1e6);
+    if (fails(leak)) std::printf("  %s\n", leak.example.c_str());
   }
 }
 
@@ -154,13 +187,25 @@ std::vector<const HardCase*> chosen_cases(const Options& options) {
   return cases;
 }
 
-std::vector<StabilityCase> examine_cases(CheckedDevice& device, std::span<const HardCase* const> chosen,
-                                         const Options& options, const StabilityOptions& stability) {
-  std::vector<StabilityCase> cases;
-  Progress progress("hard cases", static_cast<std::uint32_t>(chosen.size()));
-  for (const HardCase* const hard_case : chosen) {
-    cases.push_back(examine_case(device, *hard_case, options, stability));
-    progress.step();
+struct ExaminedCases {
+  std::vector<StabilityCase> rows;  // of more seeds than one only those that fail
+  std::uint64_t examined = 0, failed = 0;
+  KindSums kinds;
+};
+
+ExaminedCases examine_cases(CheckedDevice& device, std::span<const HardCase* const> chosen,
+                            const Options& options, StabilityOptions stability) {
+  ExaminedCases cases;
+  Progress progress("hard cases", static_cast<std::uint32_t>(chosen.size()) * options.seed_count);
+  for (std::uint32_t seed = 0; seed < options.seed_count; ++seed, ++stability.seed) {
+    for (const HardCase* const hard_case : chosen) {
+      const StabilityCase result = examine_case(device, *hard_case, options, stability);
+      ++cases.examined;
+      cases.failed += !result.passes();
+      cases.kinds.add(result);
+      if (options.seed_count == 1 || !result.passes()) cases.rows.push_back(result);
+      progress.step();
+    }
   }
   return cases;
 }
@@ -171,29 +216,27 @@ int run_stability(const Options& options) {
   const std::vector<const HardCase*> chosen = chosen_cases(options);
   CheckedDevice device = open_device(options);
   const StabilityOptions stability{options.most_triangles, options.rays_of_a_kind, options.seed};
-  const std::vector<StabilityCase> cases = examine_cases(device, chosen, options, stability);
+  const ExaminedCases cases = examine_cases(device, chosen, options, stability);
   std::vector<LeakCount> leaks;
   if (options.leak_rays) leaks = count_leaks(device, chosen, options.leak_rays, options, stability);
   const double nan_cost = cost_of_nan_rays(device, options);
 
-  std::uint64_t failed = std::ranges::count_if(cases, [](const auto& one) { return !one.passes(); });
-  failed += std::ranges::count_if(leaks, [](const LeakCount& leak) {
-    return leak.variant == &intersection_variants().back() && leak.leaks > 0;
-  });
+  const std::uint64_t failed = cases.failed + std::ranges::count_if(leaks, fails);
   if (talks(options)) {
-    print_header();
-    for (const StabilityCase& one : cases) print_case(one);
-    print_kinds(cases);
+    if (!cases.rows.empty()) print_header();
+    for (const StabilityCase& one : cases.rows) print_case(one);
+    cases.kinds.print();
     if (!leaks.empty()) print_leaks(leaks);
     std::printf("\nA ray with a NaN takes %.2f times as long as a random one.\n", nan_cost);
   }
   Json json = {{"device", device.device.properties().name},
                {"driver", device.device.properties().driver},
+               {"examined", cases.examined},
                {"cases", Json::array()},
                {"leaks", Json::array()},
                {"nan_ray_cost", nan_cost},
                {"failed", failed}};
-  for (const StabilityCase& one : cases) json["cases"].push_back(to_json(one));
+  for (const StabilityCase& one : cases.rows) json["cases"].push_back(to_json(one));
   for (const LeakCount& leak : leaks) json["leaks"].push_back(to_json(leak));
   write_json(options.json, json);
   const int validation = validation_status(device.device);

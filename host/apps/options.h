@@ -39,7 +39,7 @@ struct Options {
   bool hard = false;  // of `scenes`: the hard cases in place of the others
 
   std::vector<std::string> cases;  // of `stability`; empty: all
-  std::uint32_t most_triangles = 2000, rays_of_a_kind = 500;
+  std::uint32_t most_triangles = 2000, rays_of_a_kind = 500, seed_count = 1;
   std::uint64_t seed = 1, leak_rays = 20000;
 
   std::string output = "coppice.png";

@@ -6,6 +6,7 @@
 
 #include "analysis/judge_hits.h"
 #include "apps/checked_device.h"
+#include "apps/ray_example.h"
 #include "scene/hard_cases.h"
 
 namespace coppice {
@@ -23,8 +24,11 @@ const std::vector<IntersectionVariant>& intersection_variants();
 struct RayResult {
   std::string_view kind;
   HitVerdicts verdicts{};
-  std::uint64_t leaks = 0;  // misses of rays from inside of a closed mesh
-  std::string example{};    // of a false hit or a missed ray, in full precision
+  std::uint64_t leaks = 0;             // misses of rays from inside of a closed mesh
+  std::vector<RayExample> examples{};  // one of each kind of failure, the gravest first
+
+  // Of the first example, on one line; empty where nothing failed.
+  std::string example() const { return examples.empty() ? "" : described(examples.front()); }
 };
 
 struct VariantResult {
@@ -33,11 +37,13 @@ struct VariantResult {
   bool bits_equal = false;  // the device's hits are the twins'
   std::string error;        // that the trace ended with; then no ray is judged
 
+  // Of the examples the first of each kind of failure.
   RayResult total() const;
 };
 
 struct StabilityCase {
   std::string scene;
+  std::uint64_t seed = 1;
   std::uint64_t triangles = 0;
   std::uint32_t rounds = 0, rounds_bound = 0, depth = 0;
   std::string fault;             // of the device's tree; empty: valid
@@ -45,8 +51,7 @@ struct StabilityCase {
   bool same_as_builder = false;  // the independent builder's tree has the same bits
   std::vector<VariantResult> variants;
 
-  // Whether the build is sound and the most accurate variant loses and invents no hit. (Not counted: hits on
-  // triangles whose area is exactly 0, but whose rounded corners span one.)
+  // Whether the build is sound and the most accurate variant loses and invents no hit.
   bool passes() const;
 };
 
@@ -75,6 +80,7 @@ struct LeakCount {
   const IntersectionVariant* variant;
   std::uint64_t rays = 0, leaks = 0;
   double seconds = 0;
+  std::string example{};  // of a leak
 };
 
 // Shoots `rays` rays at corners, edges and inner points of each closed one of the cases, at scales from 1e-6

@@ -62,6 +62,9 @@ std::vector<LeakCount> count_leaks(CheckedDevice& device, const HardCase& hard_c
       if (traced.error_word) throw DeviceError(describe_error_word(traced.error_word));
       leak.rays += count;
       leak.leaks += count - traced.hit_count;
+      if (traced.hit_count < count && leak.example.empty()) {
+        leak.example = described(example_of_leak({bvh.nodes, triangles, batch, traced.hits}, "from inside"));
+      }
       leak.seconds += traced.ms / 1000;
     }
   }

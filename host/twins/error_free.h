@@ -22,4 +22,10 @@ inline Unrounded exact_product(float a, float b) {
   return {product, std::fma(a, b, -product)};
 }
 
+// a * b - c * d, off by at most 3 * 2^-24 of itself however much cancels.
+inline float difference_of_products(float a, float b, float c, float d) {
+  const Unrounded first = exact_product(a, b), second = exact_product(c, d);
+  return (first.value - second.value) + (first.rest - second.rest);
+}
+
 }  // namespace coppice::twins

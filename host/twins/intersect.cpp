@@ -53,12 +53,6 @@ struct Sides {
 
 float plain_difference(float a, float b, float c, float d) { return a * b - c * d; }
 
-// As good as rounded once.
-float careful_difference(float a, float b, float c, float d) {
-  const Unrounded first = exact_product(a, b), second = exact_product(c, d);
-  return (first.value - second.value) + (first.rest - second.rest);
-}
-
 template <class Difference>
 Sides sides_of(const Corner& a, const Corner& b, const Corner& c, Difference difference) {
   return {difference(c.x, b.y, c.y, b.x), difference(a.x, c.y, a.y, c.x), difference(b.x, a.y, b.y, a.x)};
@@ -78,11 +72,11 @@ void meet_watertight(const TraceRay& ray, const Triangle& triangle, uint index, 
   Sides sides = sides_of(a, b, c, plain_difference);
   if (!sides.agree()) return;
   // Zeroes may be lost differences, and small ones are mostly rounding.
-  if (sides.any_zero() || std::fabs(sides.sum()) < 0x1p-8f) sides = sides_of(a, b, c, careful_difference);
+  if (sides.any_zero() || std::fabs(sides.sum()) < 0x1p-6f) sides = sides_of(a, b, c, difference_of_products);
   const float sum = sides.sum();
   if (!sides.agree() || sum == 0) return;
-  const float depth = (sides.bc * a.z + sides.ca * b.z + sides.ab * c.z) / sum;
-  keep_closer(ray, {depth * ray.stretch, index, sides.ca / sum, sides.ab / sum}, hit);
+  const float w = sides.bc / sum, u = sides.ca / sum, v = sides.ab / sum;
+  keep_closer(ray, {(w * a.z + u * b.z + v * c.z) * ray.stretch, index, u, v}, hit);
 }
 
 }  // namespace

@@ -26,8 +26,8 @@ vec2 two_product(float a, float b) {
   return vec2(product, rest);
 }
 
-// a * b - c * d, as good as rounded once. Never of the wrong sign: rounding is monotonic, so where the rounded products
-// differ, so do the exact ones, and the rests are too small to turn the sign.
+// a * b - c * d, off by at most 3 * 2^-24 of itself however much cancels: so never of the wrong sign, and 0 only if it
+// is. The proof is in docs/numerics.md, "Triangle test".
 float product_difference(float a, float b, float c, float d) {
   vec2 p = two_product(a, b), q = two_product(c, d);
   precise float difference = (p.x - q.x) + (p.y - q.y);

@@ -29,7 +29,7 @@ bool are_mixed(vec3 signs) {
   return lesser(lesser(signs.x, signs.y), signs.z) < 0.0 && greater(greater(signs.x, signs.y), signs.z) > 0.0;
 }
 
-const float WATERTIGHT_SLIVER = 0.00390625;  // 2^-8, of a triangle of size 1 to 2
+const float WATERTIGHT_SLIVER = 0.015625;  // 2^-6, of a triangle of size 1 to 2
 
 // Woop, Benthin and Wald 2013, "Watertight Ray/Triangle Intersection": corners are sheared so that the ray is the z
 // axis, and the signs of the edge functions are exact, so of the triangles around an edge or corner one is hit. Where
@@ -57,9 +57,11 @@ void intersect_watertight(TraceRay ray, Triangle triangle, uint index, inout Hit
     sum = beside.x + beside.y + beside.z;
     if (are_mixed(beside) || sum == 0.0) return;
   }
-  precise float weighted = beside.x * a.z + beside.y * b.z + beside.z * c.z;
-  precise float t = weighted / sum * ray.shear.z;
-  keep_closer(ray, t, index, beside.y / sum, beside.z / sum, hit);
+  // Divided first: a product of a small function and a small depth would underflow.
+  precise vec3 share = beside / sum;
+  precise float depth = share.x * a.z + share.y * b.z + share.z * c.z;
+  precise float t = depth * ray.shear.z;
+  keep_closer(ray, t, index, share.y, share.z, hit);
 }
 
 void intersect_triangle(TraceRay ray, Triangle triangle, uint index, inout Hit hit) {
