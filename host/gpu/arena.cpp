@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <new>
 
 #include "gpu/arena_blocks.h"
 
@@ -13,9 +14,23 @@ namespace {
 
 constexpr std::uint64_t staging_bytes = std::uint64_t{16} << 20;
 
+[[noreturn]] void fail_for_memory(const char* whose, std::uint64_t bytes) {
+  throw DeviceError(std::string("out of memory: the ") + whose + " has no " + std::to_string(bytes) +
+                    " bytes left");
+}
+
+// Some drivers say success and give no address when the system maps no more.
+std::byte* map(const vk::raii::DeviceMemory& memory, std::uint64_t bytes) {
+  void* const address = memory.mapMemory(0, VK_WHOLE_SIZE);
+  if (address == nullptr || address == reinterpret_cast<void*>(~std::uintptr_t{0}))
+    fail_for_memory("host's address space", bytes);
+  return static_cast<std::byte*>(address);
+}
+
 Buffer make_buffer(VulkanContext& context, std::uint64_t bytes, vk::BufferUsageFlags usage,
                    vk::MemoryPropertyFlags flags) {
   Buffer result;
+  result.bytes = bytes;
   try {
     result.buffer = vk::raii::Buffer(context.device, {{}, bytes, usage, vk::SharingMode::eExclusive});
     const auto needs = result.buffer.getMemoryRequirements();
@@ -26,16 +41,25 @@ Buffer make_buffer(VulkanContext& context, std::uint64_t bytes, vk::BufferUsageF
         context.device, {needs.size, context.memory_type(needs.memoryTypeBits, flags), &address_flag});
     result.buffer.bindMemory(*result.memory, 0);
     if (addressed) result.address = context.device.getBufferAddress({*result.buffer});
-    if (flags & vk::MemoryPropertyFlagBits::eHostVisible) {
-      result.mapped = static_cast<std::byte*>(result.memory.mapMemory(0, VK_WHOLE_SIZE));
-    }
+    if (flags & vk::MemoryPropertyFlagBits::eHostVisible) result.mapped = map(result.memory, bytes);
   } catch (const vk::OutOfDeviceMemoryError&) {
-    throw DeviceError("out of memory: the device has no " + std::to_string(bytes) + " bytes left");
+    fail_for_memory("device", bytes);
   } catch (const vk::OutOfHostMemoryError&) {
-    throw DeviceError("out of memory: the host has no " + std::to_string(bytes) +
-                      " bytes left for the device");
+    fail_for_memory("host", bytes);
+  } catch (const vk::MemoryMapFailedError&) {
+    fail_for_memory("host's address space", bytes);
+  } catch (const std::bad_alloc&) {
+    fail_for_memory("host", bytes);
+  } catch (const vk::SystemError& error) {
+    throw DeviceError("no buffer of " + std::to_string(bytes) + " bytes: " + error.what());
   }
   return result;
+}
+
+void check_range(const Buffer& block, std::uint64_t offset, std::uint64_t bytes, const char* copy) {
+  if (offset <= block.bytes && bytes <= block.bytes - offset) return;
+  throw DeviceError(std::string(copy) + " of " + std::to_string(bytes) + " bytes at " +
+                    std::to_string(offset) + ": the block has " + std::to_string(block.bytes));
 }
 
 }  // namespace
@@ -80,6 +104,7 @@ std::vector<std::uint64_t> Arena::block_addresses() const {
 
 void Arena::upload(std::uint32_t block, std::uint64_t offset, std::span<const std::byte> bytes) {
   const Buffer& target = blocks_->list.at(block);
+  check_range(target, offset, bytes.size(), "upload");
   if (target.mapped) {
     std::ranges::copy(bytes, target.mapped + offset);
     return;
@@ -95,6 +120,7 @@ void Arena::upload(std::uint32_t block, std::uint64_t offset, std::span<const st
 
 void Arena::download(std::uint32_t block, std::uint64_t offset, std::span<std::byte> bytes) const {
   const Buffer& source = blocks_->list.at(block);
+  check_range(source, offset, bytes.size(), "download");
   if (source.mapped) {
     std::copy_n(source.mapped + offset, bytes.size(), bytes.data());
     return;
