@@ -190,20 +190,19 @@ RenderReport render_on_device(CheckedDevice& device, const Scene& scene, const O
                make_film(scene, options.camera, options.width, options.height, options.samples));
   if (!builds) upload_tree(executor, plan.tree, bvh);
 
+  const InterruptionGuard guard;
   const TreeSteps steps = tree_steps(executor, plan);
   Pace pace = warm_up(executor, steps, plan, device.device.properties());
-  {
-    TraceProgress progress(TracePieces(plan.tree, plan.trace).work() * (options.frames + split));
-    measure_frames(executor, steps, plan, pace, options.frames, progress, report);
-    const RunCounts counts = counts_of_trace(executor.read(plan.trace.counters)[0]);
-    report.rays = counts.rays;
-    report.hits = counts.hits;
-    report.steps = counts.steps;
-    report.image = executor.read(plan.trace.image);
-    for (const std::uint64_t bytes : layout.block_bytes()) report.build.device_bytes += bytes;
-    if (builds) describe_build(device, executor, *plan.build, report.build);
-    if (split) split_kernels(device, executor, steps, plan, pace, progress, options.trace_events, report);
-  }
+  TraceProgress progress(TracePieces(plan.tree, plan.trace).work() * (options.frames + split));
+  measure_frames(executor, steps, plan, pace, options.frames, progress, report);
+  const RunCounts counts = counts_of_trace(executor.read(plan.trace.counters)[0]);
+  report.rays = counts.rays;
+  report.hits = counts.hits;
+  report.steps = counts.steps;
+  report.image = executor.read(plan.trace.image);
+  for (const std::uint64_t bytes : layout.block_bytes()) report.build.device_bytes += bytes;
+  if (builds) describe_build(device, executor, *plan.build, report.build);
+  if (split) split_kernels(device, executor, steps, plan, pace, progress, options.trace_events, report);
   return report;
 }
 
