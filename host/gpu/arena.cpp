@@ -1,10 +1,15 @@
 #include "gpu/arena.h"
 
+#if __has_include(<sys/mman.h>)
+#include <sys/mman.h>
+#endif
+
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <new>
+#include <numeric>
 
 #include "gpu/arena_blocks.h"
 
@@ -56,6 +61,22 @@ Buffer make_buffer(VulkanContext& context, std::uint64_t bytes, vk::BufferUsageF
   return result;
 }
 
+// Drivers of CPU devices compile kernels in this process, and some crash where they get no memory for it:
+// better to say so before.
+void check_reserve(std::uint64_t block_bytes) {
+#if __has_include(<sys/mman.h>)
+  constexpr std::uint64_t reserve_bytes = std::uint64_t{256} << 20;
+  void* const reserve =
+      mmap(nullptr, reserve_bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (reserve == MAP_FAILED) {
+    throw DeviceError("out of memory: beside " + std::to_string(block_bytes) +
+                      " bytes for the device the host's address space has no " +
+                      std::to_string(reserve_bytes) + " bytes left for its driver");
+  }
+  munmap(reserve, reserve_bytes);
+#endif
+}
+
 void check_range(const Buffer& block, std::uint64_t offset, std::uint64_t bytes, const char* copy) {
   if (offset <= block.bytes && bytes <= block.bytes - offset) return;
   throw DeviceError(std::string(copy) + " of " + std::to_string(bytes) + " bytes at " +
@@ -87,6 +108,8 @@ Arena::Arena(Device& device, const std::vector<std::uint64_t>& block_bytes)
     blocks_->list.push_back(make_buffer(context, bytes, usage, shared ? host : Memory::eDeviceLocal));
     if (shared) std::memset(blocks_->list.back().mapped, 0, bytes);
   }
+  if (context.properties.type == DeviceType::cpu)
+    check_reserve(std::accumulate(block_bytes.begin(), block_bytes.end(), std::uint64_t{0}));
   if (shared) return;
   blocks_->staging = make_buffer(context, staging_bytes, Usage::eTransferSrc | Usage::eTransferDst, host);
   run_commands(context, [&](const vk::raii::CommandBuffer& commands) {
