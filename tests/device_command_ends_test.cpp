@@ -115,7 +115,9 @@ TEST_F(CommandEnds, WithoutTimestampsTimesAreTheHostsAndKernelsHaveNone) {
                                 "trace terrain:500 --size 32x24", "build --most 3000 --builder gpu-ploc"}) {
     const Outcome bench = run_after(without, std::string("bench ") + arguments + " --runs 2 --json -");
     ASSERT_EQ(bench.status, 0) << arguments << ": " << bench.err;
-    for (const auto& row : nlohmann::json::parse(bench.out)["rows"]) {
+    const auto report = nlohmann::json::parse(bench.out);
+    EXPECT_FALSE(report["rows"].empty()) << arguments;
+    for (const auto& row : report["rows"]) {
       EXPECT_GT(row["ms"], 0) << arguments;
       EXPECT_GT(row["millions_per_s"], 0) << arguments;
     }
@@ -132,7 +134,8 @@ TEST_F(CommandEnds, KernelsAndTraceEventsCoverAllSubmitsOfALongTrace) {
   const auto render = nlohmann::json::parse(read("out.json"));
   std::map<std::string, double> events_ms, kernels_ms;
   std::map<std::string, std::uint64_t> bytes, events;
-  for (const auto& event : nlohmann::json::parse(read("events.json"))["traceEvents"]) {
+  const auto written = nlohmann::json::parse(read("events.json"));
+  for (const auto& event : written["traceEvents"]) {
     events_ms[event["name"]] += event["dur"].get<double>() / 1000;
     ++events[event["name"]];
   }
