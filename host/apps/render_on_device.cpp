@@ -68,16 +68,15 @@ Pace warm_up(GpuExecutor& executor, const TreeSteps& steps, const FramePlan& pla
 // A bar over all pieces of several traces.
 class TraceProgress {
  public:
-  explicit TraceProgress(std::uint64_t work) : work_(work), bar_("tracing", percent) {}
+  TraceProgress(std::uint64_t work, std::uint32_t traces)
+      : percent_per_work_(100 / (static_cast<double>(work) * traces)), bar_("tracing", 100) {}
   void add(std::uint64_t work) {
-    done_ += work;
-    bar_.advance(
-        static_cast<std::uint32_t>(percent * static_cast<double>(done_) / static_cast<double>(work_)));
+    percent_ = std::min(percent_ + static_cast<double>(work) * percent_per_work_, 100.0);
+    bar_.advance(static_cast<std::uint32_t>(percent_));
   }
 
  private:
-  static constexpr std::uint32_t percent = 100;
-  std::uint64_t work_, done_ = 0;
+  double percent_per_work_, percent_ = 0;
   Progress bar_;
 };
 
@@ -193,7 +192,7 @@ RenderReport render_on_device(CheckedDevice& device, const Scene& scene, const O
   const InterruptionGuard guard;
   const TreeSteps steps = tree_steps(executor, plan);
   Pace pace = warm_up(executor, steps, plan, device.device.properties());
-  TraceProgress progress(TracePieces(plan.tree, plan.trace).work() * (options.frames + split));
+  TraceProgress progress(TracePieces(plan.tree, plan.trace).work(), options.frames + split);
   measure_frames(executor, steps, plan, pace, options.frames, progress, report);
   const RunCounts counts = counts_of_trace(executor.read(plan.trace.counters)[0]);
   report.rays = counts.rays;
