@@ -72,13 +72,12 @@ BenchRow bench_builder(CheckedDevice& device, const Options& options, const Name
   BenchRow row = bench_row(std::string(builder.name), "scatter", count,
                            measure_steady(steady_options(options, run()), run));
   const KernelSplit split = split_time(build.executor(), build.steps(), limit_seconds);
-  const RunCounts counts = build.counts();
-  row.kernels = kernel_table(split, counts, find_copy_limit(device.device, largest_dispatch(split, counts)),
-                             row.ms.median);
+  const KernelSums sums(split, build.counts());
+  row.kernels = kernel_table(sums, find_copy_limit(device.device, sums.largest_dispatch()), row.ms.median);
   const double scratch = static_cast<double>(build.scratch_bytes()) / count;
   row.figures = {{"scratch_bytes_per_triangle", scratch},
-                 {"device_bytes_per_triangle", static_cast<double>(build.device_bytes()) / count},
-                 {"timed_ms", row.kernels.sum().ms}};
+                 {"device_bytes_per_triangle", static_cast<double>(build.device_bytes()) / count}};
+  if (!row.kernels.untimed) row.figures.emplace_back("timed_ms", row.kernels.sum().ms);
   char note[80];
   std::snprintf(note, sizeof note, "%.1f bytes of scratch a triangle", scratch);
   row.note = note;
@@ -94,6 +93,9 @@ std::vector<Step> with_mark(std::vector<Step> steps) {
 }
 
 BenchRow bench_rounds(CheckedDevice& device, const Options& options, std::uint32_t count) {
+  if (device.device.properties().timestamp_period_ns == 0)
+    throw DeviceError("bench ploc: " + device.device.properties().name +
+                      " has no timestamps, which tell the rounds from the rest of a build");
   CheckedBuild build(device, options, *find_device_builder("gpu-ploc"), count);
   const std::vector<Step> needed = split_time(build.executor(), build.steps(), limit_seconds).steps;
   Recorder whole = build.executor().record(with_mark(build.steps()));

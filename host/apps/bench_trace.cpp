@@ -32,7 +32,7 @@ void check_hits(RayTracing& tracing, std::span<const Ray> rays, const TraceOptio
 // The whole chain of a picture of the same rays: camera rays, closest hits, shading, sRGB.
 void add_frame(CheckedDevice& device, Options options, const Scene& scene, BenchRow& row) {
   options.frames = options.runs;
-  const RenderReport frame = render_on_device(device, scene, options);
+  const RenderReport frame = render_on_device(device, scene, options, false);
   if (frame.rays != row.size) throw DeviceError("the picture has other rays than the measurement");
   const double mrays_per_s = static_cast<double>(frame.rays) / frame.trace_ms / 1000;
   row.figures = {{"frame_ms", frame.trace_ms}, {"frame_millions_per_s", mrays_per_s}};

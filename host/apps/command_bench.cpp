@@ -32,6 +32,7 @@ std::span<const NamedBench> benches() {
 int run_bench(const Options& options) {
   CheckedDevice device = open_device(options);
   const DeviceProperties& properties = device.device.properties();
+  note_timestamps(device.device);
   std::vector<BenchRow> rows;
   if (talks(options)) {
     std::printf("%s, %s\n  %-15s %-16s %10s %10s %10s %10s %10s\n", properties.name.c_str(),

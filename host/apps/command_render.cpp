@@ -5,6 +5,7 @@
 #include "analysis/tree_hash.h"
 #include "apps/frame.h"
 #include "apps/render_frame.h"
+#include "pipeline/interruption.h"
 #include "scene/input_error.h"
 #include "scene/scene_source.h"
 #include "scene/write_file.h"
@@ -37,32 +38,30 @@ Json camera_of(const Scene& scene, const Options& options) {
 
 Json to_json(const RenderReport& report, const Scene& scene, const Options& options) {
   const double rays = static_cast<double>(report.rays);
-  return {{"build", to_json(report.build)},
-          {"width", options.width},
-          {"height", options.height},
-          {"spp", options.samples},
-          {"offset", coordinates(scene.offset)},
-          {"camera", camera_of(scene, options)},
-          {"tracer", options.tracer},
-          {"trace_device", report.trace_device},
-          {"tree", report.walks_wide ? "wide" : "binary"},
-          {"wide_ms", report.wide_ms},
-          {"trace_ms", report.trace_ms},
-          {"rays",
-           {{"primary", report.rays},
-            {"shadow", 0},
-            {"reflection", 0},
-            {"refraction", 0},
-            {"occlusion", 0},
-            {"diffuse", 0}}},
-          {"mrays_per_s", rays / report.trace_ms / 1000},
-          {"effects", effects_of(scene)},
-          {"kernels", to_json(report.kernels)},
-          {"timed_ms", report.kernels.sum().ms},
-          {"copy_gb_per_s", report.kernels.copy_gb_per_s},
-          {"image_hash", hex16(image_hash(report.image))},
-          {"hits", report.hits},
-          {"steps_per_ray", rays > 0 ? static_cast<double>(report.steps) / rays : 0.0}};
+  Json json = {{"build", to_json(report.build)},
+               {"width", options.width},
+               {"height", options.height},
+               {"spp", options.samples},
+               {"tracer", options.tracer},
+               {"trace_device", report.trace_device},
+               {"tree", report.walks_wide ? "wide" : "binary"},
+               {"wide_ms", report.wide_ms},
+               {"trace_ms", report.trace_ms},
+               {"rays",
+                {{"primary", report.rays},
+                 {"shadow", 0},
+                 {"reflection", 0},
+                 {"refraction", 0},
+                 {"occlusion", 0},
+                 {"diffuse", 0}}},
+               {"mrays_per_s", rays / report.trace_ms / 1000},
+               {"effects", effects_of(scene)},
+               {"kernels", to_json(report.kernels)}};
+  sums_to_json(report.kernels, json);
+  json["image_hash"] = hex16(image_hash(report.image));
+  json["hits"] = report.hits;
+  json["steps_per_ray"] = rays > 0 ? static_cast<double>(report.steps) / rays : 0.0;
+  return json;
 }
 
 void print_render(const RenderReport& report, const Options& options, double load_ms, double prepare_ms,
@@ -101,13 +100,16 @@ int run_render(const Options& options) {
   const auto device_start = Clock::now();
   if (options.tracer == "gpu" || find_device_builder(options.builder)) device.emplace(open_device(options));
   const double device_ms = device ? ms_since(device_start) : 0;
+  const bool split = options.kernels || !options.json.empty() || !options.trace_events.empty();
   const RenderReport report = options.tracer == "gpu"
-                                  ? render_on_device(*device, scene, options)
+                                  ? render_on_device(*device, scene, options, split)
                                   : render_on_host(device ? &*device : nullptr, scene, options);
+  const InterruptionGuard guard;  // no half-written file
   const auto write_start = Clock::now();
   write_png(options.output, options.width, options.height, report.image);
   if (talks(options)) print_render(report, options, load_ms, device_ms, ms_since(write_start));
   write_json(options.json, to_json(report, scene, options));
+  throw_if_interrupted();
   return device ? validation_status(device->device) : 0;
 }
 

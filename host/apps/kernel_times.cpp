@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 namespace coppice {
 
@@ -58,13 +59,11 @@ KernelTime KernelTable::sum() const {
   return sum;
 }
 
-std::uint64_t largest_dispatch(const KernelSplit& split, const RunCounts& counts) {
-  std::uint64_t largest = 0;
-  for (const Step& step : split.steps) largest = std::max(largest, modelled_bytes(step, counts).value_or(0));
-  return largest;
-}
-
 std::optional<CopyLimit> find_copy_limit(Device& device, std::uint64_t most_bytes) {
+  if (device.properties().timestamp_period_ns == 0) {
+    note_timestamps(device);
+    return std::nullopt;
+  }
   try {
     return measure_copy_limit(device, most_bytes);
   } catch (const DeviceError& error) {
@@ -73,19 +72,44 @@ std::optional<CopyLimit> find_copy_limit(Device& device, std::uint64_t most_byte
   }
 }
 
-KernelTable kernel_table(const KernelSplit& split, const RunCounts& counts,
-                         const std::optional<CopyLimit>& limit, double untimed_ms) {
+void note_timestamps(const Device& device) {
+  static bool said = false;
+  if (device.properties().timestamp_period_ns > 0 || std::exchange(said, true)) return;
+  std::fprintf(stderr, "note: %s has no timestamps: times are those of the host's clock, none of kernels\n",
+               device.properties().name.c_str());
+}
+
+void KernelSums::add(std::span<const Step> steps, const Recorder::Times& times, const RunCounts& counts) {
+  untimed_ = untimed_ || (times.steps_ms.empty() && !steps.empty());
+  for (std::size_t i = 0; i < times.steps_ms.size(); ++i) {
+    const std::string name = step_name(steps[i]);
+    const std::optional<std::uint64_t> bytes = modelled_bytes(steps[i], counts);
+    const auto [entry, is_new] = index_.try_emplace({name, bytes}, sums_.size());
+    if (is_new) sums_.push_back({name, bytes});
+    Sum& sum = sums_[entry->second];
+    sum.ms += times.steps_ms[i];
+    ++sum.dispatches;
+  }
+}
+
+std::uint64_t KernelSums::largest_dispatch() const {
+  std::uint64_t largest = 0;
+  for (const Sum& sum : sums_) largest = std::max(largest, sum.bytes.value_or(0));
+  return largest;
+}
+
+KernelTable kernel_table(const KernelSums& sums, const std::optional<CopyLimit>& limit, double untimed_ms) {
   KernelTable table;
+  table.untimed = sums.untimed();
   table.untimed_ms = untimed_ms;
-  for (std::size_t i = 0; i < split.times.steps_ms.size(); ++i) {
-    const std::string name = step_name(split.steps[i]);
-    auto row = std::ranges::find(table.rows, name, &KernelTime::name);
-    if (row == table.rows.end()) row = table.rows.insert(row, {.name = name});
-    const std::optional<std::uint64_t> bytes = modelled_bytes(split.steps[i], counts);
-    row->ms += split.times.steps_ms[i];
-    ++row->dispatches;
-    add(row->bytes, bytes);
-    add(row->copy_ms, limit && bytes ? std::optional(limit->ms(*bytes)) : std::nullopt);
+  for (const KernelSums::Sum& sum : sums.sums()) {
+    auto row = std::ranges::find(table.rows, sum.name, &KernelTime::name);
+    if (row == table.rows.end()) row = table.rows.insert(row, {.name = sum.name});
+    row->ms += sum.ms;
+    row->dispatches += sum.dispatches;
+    add(row->bytes, sum.bytes ? std::optional(*sum.bytes * sum.dispatches) : std::nullopt);
+    add(row->copy_ms,
+        limit && sum.bytes ? std::optional(limit->ms(*sum.bytes) * sum.dispatches) : std::nullopt);
   }
   if (limit) {
     const CopyLimit::Measurement& largest = limit->measurements().back();
@@ -94,7 +118,13 @@ KernelTable kernel_table(const KernelSplit& split, const RunCounts& counts,
   return table;
 }
 
+void sums_to_json(const KernelTable& table, Json& json) {
+  json["timed_ms"] = table.untimed ? Json(nullptr) : Json(table.sum().ms);
+  json["copy_gb_per_s"] = table.untimed ? Json(nullptr) : Json(table.copy_gb_per_s);
+}
+
 Json to_json(const KernelTable& table) {
+  if (table.untimed) return nullptr;
   const auto known = [](bool is_known, auto value) { return is_known ? Json(value) : Json(nullptr); };
   Json rows = Json::array();
   for (const KernelTime& kernel : table.rows) {

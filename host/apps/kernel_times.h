@@ -1,9 +1,11 @@
 #pragma once
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pipeline/copy_limit.h"
@@ -14,7 +16,8 @@ namespace coppice {
 
 using Json = nlohmann::ordered_json;
 
-// The steps of a chain that the device runs, and their times from one run with Timestamps::every_step.
+// The steps of a chain that the device runs, and their times from one run with Timestamps::every_step; no
+// times from a device without timestamps.
 struct KernelSplit {
   std::vector<Step> steps;  // without marks, and without indirect dispatches that were empty
   Recorder::Times times;
@@ -25,6 +28,38 @@ struct KernelSplit {
 KernelSplit split_time(GpuExecutor& executor, std::span<const Step> steps, double limit_seconds);
 
 const char* step_name(const Step& step);
+
+// Says on stderr, once, that a device has no timestamps, so that there are no times of kernels.
+void note_timestamps(const Device& device);
+
+// Times of kernels summed up, so that a trace of any length takes little memory: one sum for all dispatches
+// of a kernel that move as many bytes.
+class KernelSums {
+ public:
+  KernelSums() = default;
+  KernelSums(const KernelSplit& split, const RunCounts& counts) { add(split.steps, split.times, counts); }
+
+  // `times`: with Timestamps::every_step; `counts`: for the stages' models.
+  void add(std::span<const Step> steps, const Recorder::Times& times, const RunCounts& counts);
+
+  struct Sum {
+    std::string name;
+    std::optional<std::uint64_t> bytes;  // of one dispatch, by the stage's model
+    double ms = 0;
+    std::uint32_t dispatches = 0;
+  };
+  const std::vector<Sum>& sums() const { return sums_; }  // in order of appearance
+
+  // The most bytes that a dispatch moves, by its model.
+  std::uint64_t largest_dispatch() const;
+
+  bool untimed() const { return untimed_; }  // by a device without timestamps
+
+ private:
+  bool untimed_ = false;
+  std::vector<Sum> sums_;
+  std::map<std::pair<std::string, std::optional<std::uint64_t>>, std::size_t> index_;
+};
 
 // One row of the table of kernels: all dispatches of a kernel.
 struct KernelTime {
@@ -40,22 +75,20 @@ struct KernelTime {
 
 struct KernelTable {
   std::vector<KernelTime> rows;  // in order of appearance
+  bool untimed = false;          // by a device without timestamps: nothing is known, and JSON says null
   double untimed_ms = 0;         // the same steps without a timestamp after each
   double copy_gb_per_s = 0;      // of the largest copy that was measured; 0: none
 
   KernelTime sum() const;
 };
 
-// The most bytes that a step of the split moves, by its model.
-std::uint64_t largest_dispatch(const KernelSplit& split, const RunCounts& counts);
-
 // Empty, with a note on stderr, where the device cannot measure it.
 std::optional<CopyLimit> find_copy_limit(Device& device, std::uint64_t most_bytes);
 
-KernelTable kernel_table(const KernelSplit& split, const RunCounts& counts,
-                         const std::optional<CopyLimit>& limit, double untimed_ms);
+KernelTable kernel_table(const KernelSums& sums, const std::optional<CopyLimit>& limit, double untimed_ms);
 
-// Rows; the sums are not among them.
+// Rows; the sums are not among them. `sums_to_json`: timed_ms and copy_gb_per_s. Null where untimed.
+void sums_to_json(const KernelTable& table, Json& json);
 Json to_json(const KernelTable& table);
 void print_kernels(const KernelTable& table);
 

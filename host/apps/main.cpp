@@ -8,6 +8,7 @@
 #include <new>
 
 #include "apps/command_line.h"
+#include "pipeline/interruption.h"
 
 int main(int argc, char** argv) {
   // Memory that one build gives back serves the next: fetching it from the kernel anew, page by page, takes
@@ -18,6 +19,9 @@ int main(int argc, char** argv) {
 #endif
   try {
     return coppice::run_command_line(argc, argv);
+  } catch (const coppice::Interrupted& interrupted) {
+    std::fprintf(stderr, "coppice: interrupted\n");
+    return 128 + interrupted.signal;  // as shells say it
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "coppice: out of memory\n");
   } catch (const std::exception& error) {

@@ -118,7 +118,9 @@ BuildReport measure_gpu_build(CheckedDevice& device, GpuExecutor& executor, cons
     append_wide(chain, plan, *wide);
   }
   const KernelSplit split = split_time(executor, chain.steps(), limit_seconds);
-  write_trace_events(options.trace_events, split);
+  TraceEvents events;
+  events.add(split);
+  events.write(options.trace_events);
   check_state(executor, plan);
 
   report.device = device.device.properties().name;
@@ -127,8 +129,9 @@ BuildReport measure_gpu_build(CheckedDevice& device, GpuExecutor& executor, cons
   report.wall_ms = spread_of(wall_ms);
   report.runs = options.runs;
   const RunCounts counts = counts_of_build(executor, plan, wide);
-  const auto limit = find_copy_limit(device.device, largest_dispatch(split, counts));
-  report.kernels = kernel_table(split, counts, limit, untimed_ms);
+  const KernelSums sums(split, counts);
+  const auto limit = find_copy_limit(device.device, sums.largest_dispatch());
+  report.kernels = kernel_table(sums, limit, untimed_ms);
   if (options.rounds) report.ploc_rounds = ploc_round_times(split, counts);
   report.rounds = executor.read(plan.state)[0].round_count;
   report.rounds_bound = plan.rounds_bound;

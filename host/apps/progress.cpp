@@ -16,8 +16,9 @@ Progress::~Progress() {
   if (shown_) std::fprintf(stderr, "\r\033[K");
 }
 
-void Progress::step() {
-  ++done_;
+void Progress::advance(std::uint32_t done) {
+  if (done == done_) return;
+  done_ = done;
   draw();
 }
 

@@ -10,7 +10,8 @@ class Progress {
  public:
   Progress(std::string label, std::uint32_t steps);
   ~Progress();
-  void step();
+  void step() { advance(done_ + 1); }
+  void advance(std::uint32_t done);  // of the steps
 
  private:
   void draw() const;

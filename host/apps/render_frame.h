@@ -15,12 +15,13 @@ struct RenderReport {
   std::vector<uint> image;  // RGBA8
 };
 
-// Builds and traces in one submit, nothing read back in between; with a CPU builder its tree is uploaded
-// before.
-RenderReport render_on_device(CheckedDevice& device, const Scene& scene, const Options& options);
+// Builds in one submit and traces in as many as keep each short, with nothing but times read back in between;
+// with a CPU builder its tree is uploaded before. With `split` the frame is run once more for the times of
+// the kernels, and for the file of trace events. Throws Interrupted on SIGINT or SIGTERM between two submits.
+RenderReport render_on_device(CheckedDevice& device, const Scene& scene, const Options& options, bool split);
 
 // Traces by the independent CPU tracer; shades by the twins. With a builder on the device `device` builds the
-// tree.
+// tree. Throws Interrupted as well.
 RenderReport render_on_host(CheckedDevice* device, const Scene& scene, const Options& options);
 
 }  // namespace coppice

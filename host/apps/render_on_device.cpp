@@ -2,14 +2,15 @@
 #include <optional>
 
 #include "apps/frame.h"
+#include "apps/progress.h"
 #include "apps/render_frame.h"
+#include "pipeline/bounded_submits.h"
+#include "pipeline/trace_pieces.h"
 #include "pipeline/wide.h"
 
 namespace coppice {
 
 namespace {
-
-constexpr double limit_seconds = 600;
 
 void upload_tree(GpuExecutor& executor, const TreeSlots& tree, const Bvh& bvh) {
   if (!bvh.nodes.empty() && bvh.nodes[0].height > TRACE_STACK_LIMIT) {
@@ -29,42 +30,74 @@ struct FramePlan {
   TracePlan trace;
 };
 
-// The chain of one frame: with a builder on the device its build comes first, up to the first mark, then the
-// wide tree if it is walked, up to the second.
-struct FrameChain {
-  std::vector<Step> steps;
-  std::size_t tree_steps;
+// What a frame submits before its trace: each in one submit, without steps where there is nothing to do.
+struct TreeSteps {
+  std::vector<Step> build;  // by a builder on the device
+  std::vector<Step> wide;   // if the wide tree is walked
 };
 
-FrameChain frame_chain(const GpuExecutor& executor, const FramePlan& plan) {
-  Chain chain = executor.chain();
-  if (plan.build) append_build(chain, *plan.build);
-  chain.mark();
-  if (plan.wide) append_wide(chain, plan.tree, *plan.wide);
-  const std::size_t tree_steps = chain.steps().size();
-  chain.mark();
-  append_trace(chain, plan.tree, plan.trace);
-  return {chain.steps(), tree_steps};
+TreeSteps tree_steps(const GpuExecutor& executor, const FramePlan& plan) {
+  Chain build = executor.chain(), wide = executor.chain();
+  if (plan.build) append_build(build, *plan.build);
+  if (plan.wide) append_wide(wide, plan.tree, *plan.wide);
+  return {build.steps(), wide.steps()};
 }
 
-// A short trace through all kernels: the first use of a kernel compiles it.
-void warm_up(GpuExecutor& executor, FramePlan plan) {
-  plan.trace.image.count = std::min<std::uint64_t>(plan.trace.image.count, 64);
-  plan.trace.options.samples = 1;
-  executor.record(frame_chain(executor, plan).steps).submit_and_wait(limit_seconds);
+// Builds the tree, and traces a little in the middle of the picture: the first use of a kernel compiles it,
+// and how fast the device is is seen. Returns the pace of the frames to come.
+Pace warm_up(GpuExecutor& executor, const TreeSteps& steps, const FramePlan& plan,
+             const DeviceProperties& device) {
+  for (const std::vector<Step>* const part : {&steps.build, &steps.wide}) {
+    if (!part->empty()) executor.record(*part).submit_and_wait(piece_limit_seconds);
+  }
+  TracePlan trace = plan.trace;
+  trace.options.samples = 1;
+  const auto middle = static_cast<std::uint32_t>(trace.image.count / 2 / RANGE_RAYS * RANGE_RAYS);
+  TracePlan few = trace;
+  few.image.count = std::min<std::uint64_t>(trace.image.count, middle + RANGE_RAYS);
+  const Pace unknown(submit_target_ms(device), first_work(trace.options));
+  Pace compiling = unknown, pace = unknown;
+  submit_pieces(executor, TracePieces(plan.tree, few, middle), compiling, Timestamps::total, [](auto&&) {});
+  TracePieces pieces(plan.tree, trace, middle);
+  const double enough_ms = pace.target_ms() / 20;
+  for (double ms = 0; !pieces.done() && ms < enough_ms;)
+    ms += submit_piece(executor, pieces, pace, Timestamps::total).times.wall_ms;
+  return pace;
 }
 
-// One submit a frame, nothing read back in between.
-void measure_frames(GpuExecutor& executor, const FrameChain& chain, const FramePlan& plan, std::uint32_t runs,
-                    RenderReport& report) {
-  Recorder recorder = executor.record(chain.steps);
+// A bar over all pieces of several traces.
+class TraceProgress {
+ public:
+  TraceProgress(std::uint64_t work, std::uint32_t traces)
+      : percent_per_work_(100 / (static_cast<double>(work) * traces)), bar_("tracing", 100) {}
+  void add(std::uint64_t work) {
+    percent_ = std::min(percent_ + static_cast<double>(work) * percent_per_work_, 100.0);
+    bar_.advance(static_cast<std::uint32_t>(percent_));
+  }
+
+ private:
+  double percent_per_work_, percent_ = 0;
+  Progress bar_;
+};
+
+// Nothing is read back in between but times.
+void measure_frames(GpuExecutor& executor, const TreeSteps& steps, const FramePlan& plan, Pace& pace,
+                    std::uint32_t runs, TraceProgress& progress, RenderReport& report) {
+  Recorder build = executor.record(steps.build), wide = executor.record(steps.wide);
   std::vector<double> build_ms, wide_ms, trace_ms, wall_ms;
   for (std::uint32_t run = 0; run < runs; ++run) {
-    const Recorder::Times times = recorder.submit_and_wait(limit_seconds);
-    build_ms.push_back(times.marks_ms.at(0));
-    wide_ms.push_back(times.marks_ms.at(1) - times.marks_ms[0]);
-    trace_ms.push_back(times.total_ms - times.marks_ms[1]);
-    wall_ms.push_back(times.wall_ms);
+    if (plan.build) {
+      const Recorder::Times times = build.submit_and_wait(piece_limit_seconds);
+      build_ms.push_back(times.total_ms);
+      wall_ms.push_back(times.wall_ms);
+    }
+    if (plan.wide) wide_ms.push_back(wide.submit_and_wait(piece_limit_seconds).total_ms);
+    double& ms = trace_ms.emplace_back(0);
+    submit_pieces(executor, TracePieces(plan.tree, plan.trace), pace, Timestamps::total,
+                  [&](const SubmittedPiece& piece) {
+                    ms += piece.times.total_ms;
+                    progress.add(piece.work);
+                  });
     check_state(executor, plan.tree);
   }
   report.trace_ms = spread_of(trace_ms).median;
@@ -84,22 +117,34 @@ RunCounts counts_of_tree(const GpuExecutor& executor, const FramePlan& plan) {
   return counts;
 }
 
-void split_kernels(CheckedDevice& device, GpuExecutor& executor, const FrameChain& chain,
-                   const FramePlan& plan, const Options& options, RenderReport& report) {
-  const std::span<const Step> steps = chain.steps;
-  const KernelSplit tree_split = split_time(executor, steps.first(chain.tree_steps), limit_seconds);
-  const RunCounts tree_counts = counts_of_tree(executor, plan);
-  const KernelSplit split = split_time(executor, steps.subspan(chain.tree_steps), limit_seconds);
+// The frame once more, with a timestamp after each dispatch.
+void split_kernels(CheckedDevice& device, GpuExecutor& executor, const TreeSteps& steps,
+                   const FramePlan& plan, Pace& pace, TraceProgress& progress,
+                   const std::string& trace_events, RenderReport& report) {
+  std::vector<Step> tree_steps = steps.build;
+  tree_steps.insert(tree_steps.end(), steps.wide.begin(), steps.wide.end());
   const RunCounts counts = counts_of_trace(executor.read(plan.trace.counters)[0]);
-  const auto limit = find_copy_limit(
-      device.device, std::max(largest_dispatch(tree_split, tree_counts), largest_dispatch(split, counts)));
-  report.kernels = kernel_table(split, counts, limit, report.trace_ms);
-  if (plan.build || plan.wide) {
-    const double build_ms = plan.build ? report.build.build_ms.median : 0;
-    report.build.kernels = kernel_table(tree_split, tree_counts, limit, build_ms + report.wide_ms);
+  TraceEvents events;
+  KernelSums tree_sums, sums;
+  if (!tree_steps.empty()) {
+    const KernelSplit split = split_time(executor, tree_steps, piece_limit_seconds);
+    tree_sums.add(split.steps, split.times, counts_of_tree(executor, plan));
+    events.add(split);
   }
-  if (options.trace_events.empty()) return;
-  write_trace_events(options.trace_events, split_time(executor, steps, limit_seconds));
+  submit_pieces(executor, TracePieces(plan.tree, plan.trace), pace, Timestamps::every_step,
+                [&](const SubmittedPiece& piece) {
+                  sums.add(piece.steps, piece.times, counts);
+                  if (!trace_events.empty()) events.add(piece.steps, piece.times);
+                  progress.add(piece.work);
+                });
+  const auto limit =
+      find_copy_limit(device.device, std::max(tree_sums.largest_dispatch(), sums.largest_dispatch()));
+  report.kernels = kernel_table(sums, limit, report.trace_ms);
+  if (!tree_steps.empty()) {
+    const double build_ms = plan.build ? report.build.build_ms.median : 0;
+    report.build.kernels = kernel_table(tree_sums, limit, build_ms + report.wide_ms);
+  }
+  events.write(trace_events);
 }
 
 void describe_build(const CheckedDevice& device, const GpuExecutor& executor, const BuildPlan& build,
@@ -113,7 +158,7 @@ void describe_build(const CheckedDevice& device, const GpuExecutor& executor, co
 
 }  // namespace
 
-RenderReport render_on_device(CheckedDevice& device, const Scene& scene, const Options& options) {
+RenderReport render_on_device(CheckedDevice& device, const Scene& scene, const Options& options, bool split) {
   const SceneArrays arrays = scene_arrays(scene);
   const auto triangle_count = static_cast<std::uint32_t>(arrays.triangles.size());
   const bool builds = find_device_builder(options.builder);
@@ -144,9 +189,11 @@ RenderReport render_on_device(CheckedDevice& device, const Scene& scene, const O
                make_film(scene, options.camera, options.width, options.height, options.samples));
   if (!builds) upload_tree(executor, plan.tree, bvh);
 
-  warm_up(executor, plan);
-  const FrameChain chain = frame_chain(executor, plan);
-  measure_frames(executor, chain, plan, options.frames, report);
+  const InterruptionGuard guard;
+  const TreeSteps steps = tree_steps(executor, plan);
+  Pace pace = warm_up(executor, steps, plan, device.device.properties());
+  TraceProgress progress(TracePieces(plan.tree, plan.trace).work(), options.frames + split);
+  measure_frames(executor, steps, plan, pace, options.frames, progress, report);
   const RunCounts counts = counts_of_trace(executor.read(plan.trace.counters)[0]);
   report.rays = counts.rays;
   report.hits = counts.hits;
@@ -154,9 +201,7 @@ RenderReport render_on_device(CheckedDevice& device, const Scene& scene, const O
   report.image = executor.read(plan.trace.image);
   for (const std::uint64_t bytes : layout.block_bytes()) report.build.device_bytes += bytes;
   if (builds) describe_build(device, executor, *plan.build, report.build);
-  if (options.kernels || !options.json.empty() || !options.trace_events.empty()) {
-    split_kernels(device, executor, chain, plan, options, report);
-  }
+  if (split) split_kernels(device, executor, steps, plan, pace, progress, options.trace_events, report);
   return report;
 }
 

@@ -3,7 +3,10 @@
 
 #include "analysis/cpu_tracer.h"
 #include "apps/frame.h"
+#include "apps/progress.h"
 #include "apps/render_frame.h"
+#include "pipeline/interruption.h"
+#include "pipeline/trace_pieces.h"
 #include "stages/cpu_executor.h"
 #include "stages/stages.h"
 
@@ -20,6 +23,39 @@ Bvh build_on_device(CheckedDevice& device, const SceneArrays& arrays, BuildRepor
   executor.upload(plan.triangles, std::span<const Triangle>(arrays.triangles));
   report = measure_gpu_build(device, executor, plan, report, options);
   return {read_tree(executor, plan), executor.read(plan.state)[0].active_count, report.rounds};
+}
+
+// The device's chain, in pieces, with the independent tracer in the place of its tracer.
+void trace_on_host(CpuExecutor& executor, const TreeSlots& tree, const TracePlan& trace, const Bvh& bvh,
+                   std::span<const Triangle> triangles, RenderReport& report) {
+  // Some ms, so that Ctrl-C is heard soon.
+  const std::uint64_t piece_rays = bvh.nodes.empty() ? (1u << 24) / (triangles.size() + 1) : 1u << 16;
+  const InterruptionGuard guard;
+  TracePieces pieces(tree, trace);
+  Progress progress("tracing", 100);
+  const auto start = std::chrono::steady_clock::now();
+  while (!pieces.done()) {
+    throw_if_interrupted();
+    Chain chain = executor.chain();
+    pieces.append(chain, piece_rays);
+    for (const Step& step : chain.steps()) {
+      if (step.stage != &stages::trace_closest) {
+        executor.run(step);
+        continue;
+      }
+      TraceClosestArgs args;
+      std::memcpy(&args, step.args.data(), sizeof args);
+      const std::span<const Ray> rays(&args.rays[0], args.ray_count);
+      const std::span<Hit> hits(&args.hits[0], args.ray_count);
+      trace_all(bvh.nodes, triangles, rays, hits);
+      report.rays += args.ray_count;
+      report.hits += std::ranges::count_if(hits, [](const Hit& hit) { return hit.triangle != NO_TRIANGLE; });
+    }
+    progress.advance(static_cast<std::uint32_t>(100 * report.rays / pieces.work()));
+  }
+  throw_if_interrupted();
+  report.trace_ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
 }  // namespace
@@ -50,24 +86,7 @@ RenderReport render_on_host(CheckedDevice* device, const Scene& scene, const Opt
   upload_frame(executor, tree, trace, arrays,
                make_film(scene, options.camera, options.width, options.height, options.samples));
 
-  Chain chain = executor.chain();
-  append_trace(chain, tree, trace);
-  const auto start = std::chrono::steady_clock::now();
-  for (const Step& step : chain.steps()) {
-    if (step.stage != &stages::trace_closest) {
-      executor.run(step);
-      continue;
-    }
-    TraceClosestArgs args;
-    std::memcpy(&args, step.args.data(), sizeof args);
-    const std::span<const Ray> rays(&args.rays[0], args.ray_count);
-    const std::span<Hit> hits(&args.hits[0], args.ray_count);
-    trace_all(bvh.nodes, arrays.triangles, rays, hits);
-    report.rays += args.ray_count;
-    report.hits += std::ranges::count_if(hits, [](const Hit& hit) { return hit.triangle != NO_TRIANGLE; });
-  }
-  report.trace_ms =
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  trace_on_host(executor, tree, trace, bvh, arrays.triangles, report);
   report.image = executor.read(trace.image);
   return report;
 }

@@ -34,11 +34,10 @@ Json to_json(const BuildReport& report) {
                {"build_ms_max", report.build_ms.greatest},
                {"runs", report.runs},
                {"wall_ms", report.wall_ms.median}};
-  if (!report.kernels.rows.empty()) {
+  if (!report.kernels.rows.empty() || report.kernels.untimed) {
     json["kernels"] = to_json(report.kernels);
-    json["dispatches"] = report.kernels.sum().dispatches;
-    json["timed_ms"] = report.kernels.sum().ms;
-    json["copy_gb_per_s"] = report.kernels.copy_gb_per_s;
+    json["dispatches"] = report.kernels.untimed ? Json(nullptr) : Json(report.kernels.sum().dispatches);
+    sums_to_json(report.kernels, json);
     json["variants"] = report.variants;
     json["device_bytes"] = report.device_bytes;
   }
@@ -97,21 +96,32 @@ void write_json(const std::string& path, const Json& json) {
   }
 }
 
-void write_trace_events(const std::string& path, const KernelSplit& split) {
-  if (path.empty()) return;
-  Json events = Json::array();
-  double start_us = 0;
-  for (std::size_t i = 0; i < split.times.steps_ms.size(); ++i) {
-    const double duration_us = split.times.steps_ms[i] * 1000;
-    events.push_back({{"name", step_name(split.steps[i])},
-                      {"ph", "X"},
-                      {"ts", start_us},
-                      {"dur", duration_us},
-                      {"pid", 1},
-                      {"tid", 1}});
-    start_us += duration_us;
+void TraceEvents::add(std::span<const Step> steps, const Recorder::Times& times) {
+  for (std::size_t i = 0; i < times.steps_ms.size(); ++i) {
+    if (events_.size() < most_events) {
+      events_.push_back({step_name(steps[i]), times.steps_ms[i]});
+    } else {
+      ++left_out_;
+    }
   }
-  write_file(path, Json{{"traceEvents", events}, {"displayTimeUnit", "ms"}}.dump() + "\n");
+}
+
+void TraceEvents::write(const std::string& path) const {
+  if (path.empty()) return;
+  if (left_out_ > 0) {
+    std::fprintf(stderr, "note: %s: the first %zu events, without %llu more\n", path.c_str(), events_.size(),
+                 static_cast<unsigned long long>(left_out_));
+  }
+  std::string text = "{\"traceEvents\":[";
+  double start_us = 0;
+  for (const Event& event : events_) {
+    const Json json = {{"name", event.name},     {"ph", "X"}, {"ts", start_us},
+                       {"dur", event.ms * 1000}, {"pid", 1},  {"tid", 1}};
+    if (&event != events_.data()) text += ',';
+    text += json.dump();
+    start_us += event.ms * 1000;
+  }
+  write_file(path, text + "],\"displayTimeUnit\":\"ms\"}\n");
 }
 
 }  // namespace coppice

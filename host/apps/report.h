@@ -44,8 +44,26 @@ void print_build(const BuildReport& report);
 // Writes to the file, or to stdout for "-"; nothing for "". Throws InputError naming the file.
 void write_json(const std::string& path, const Json& json);
 
-// Chrome trace events of a timed run. Throws InputError naming the file.
-void write_trace_events(const std::string& path, const KernelSplit& split);
+// Chrome trace events of timed runs, one behind the other.
+class TraceEvents {
+ public:
+  // A viewer takes no more, and neither does memory: what comes later is left out, which stderr is told.
+  static constexpr std::size_t most_events = 1u << 20;
+
+  void add(std::span<const Step> steps, const Recorder::Times& times);
+  void add(const KernelSplit& split) { add(split.steps, split.times); }
+
+  // Throws InputError naming the file; nothing for "".
+  void write(const std::string& path) const;
+
+ private:
+  struct Event {
+    const char* name;
+    double ms;
+  };
+  std::vector<Event> events_;
+  std::uint64_t left_out_ = 0;
+};
 
 // Whether the human-readable report may go to stdout.
 inline bool talks(const Options& options) { return options.json != "-"; }

@@ -1,9 +1,15 @@
 #include "gpu/arena.h"
 
+#if __has_include(<sys/mman.h>)
+#include <sys/mman.h>
+#endif
+
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <new>
+#include <numeric>
 
 #include "gpu/arena_blocks.h"
 
@@ -13,9 +19,23 @@ namespace {
 
 constexpr std::uint64_t staging_bytes = std::uint64_t{16} << 20;
 
+[[noreturn]] void fail_for_memory(const char* whose, std::uint64_t bytes) {
+  throw DeviceError(std::string("out of memory: the ") + whose + " has no " + std::to_string(bytes) +
+                    " bytes left");
+}
+
+// Some drivers say success and give no address when the system maps no more.
+std::byte* map(const vk::raii::DeviceMemory& memory, std::uint64_t bytes) {
+  void* const address = memory.mapMemory(0, VK_WHOLE_SIZE);
+  if (address == nullptr || address == reinterpret_cast<void*>(~std::uintptr_t{0}))
+    fail_for_memory("host's address space", bytes);
+  return static_cast<std::byte*>(address);
+}
+
 Buffer make_buffer(VulkanContext& context, std::uint64_t bytes, vk::BufferUsageFlags usage,
                    vk::MemoryPropertyFlags flags) {
   Buffer result;
+  result.bytes = bytes;
   try {
     result.buffer = vk::raii::Buffer(context.device, {{}, bytes, usage, vk::SharingMode::eExclusive});
     const auto needs = result.buffer.getMemoryRequirements();
@@ -26,16 +46,41 @@ Buffer make_buffer(VulkanContext& context, std::uint64_t bytes, vk::BufferUsageF
         context.device, {needs.size, context.memory_type(needs.memoryTypeBits, flags), &address_flag});
     result.buffer.bindMemory(*result.memory, 0);
     if (addressed) result.address = context.device.getBufferAddress({*result.buffer});
-    if (flags & vk::MemoryPropertyFlagBits::eHostVisible) {
-      result.mapped = static_cast<std::byte*>(result.memory.mapMemory(0, VK_WHOLE_SIZE));
-    }
+    if (flags & vk::MemoryPropertyFlagBits::eHostVisible) result.mapped = map(result.memory, bytes);
   } catch (const vk::OutOfDeviceMemoryError&) {
-    throw DeviceError("out of memory: the device has no " + std::to_string(bytes) + " bytes left");
+    fail_for_memory("device", bytes);
   } catch (const vk::OutOfHostMemoryError&) {
-    throw DeviceError("out of memory: the host has no " + std::to_string(bytes) +
-                      " bytes left for the device");
+    fail_for_memory("host", bytes);
+  } catch (const vk::MemoryMapFailedError&) {
+    fail_for_memory("host's address space", bytes);
+  } catch (const std::bad_alloc&) {
+    fail_for_memory("host", bytes);
+  } catch (const vk::SystemError& error) {
+    throw DeviceError("no buffer of " + std::to_string(bytes) + " bytes: " + error.what());
   }
   return result;
+}
+
+// Drivers of CPU devices compile kernels in this process, and some crash where they get no memory for it:
+// better to say so before.
+void check_reserve(std::uint64_t block_bytes) {
+#if __has_include(<sys/mman.h>)
+  constexpr std::uint64_t reserve_bytes = std::uint64_t{256} << 20;
+  void* const reserve =
+      mmap(nullptr, reserve_bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (reserve == MAP_FAILED) {
+    throw DeviceError("out of memory: beside " + std::to_string(block_bytes) +
+                      " bytes for the device the host's address space has no " +
+                      std::to_string(reserve_bytes) + " bytes left for its driver");
+  }
+  munmap(reserve, reserve_bytes);
+#endif
+}
+
+void check_range(const Buffer& block, std::uint64_t offset, std::uint64_t bytes, const char* copy) {
+  if (offset <= block.bytes && bytes <= block.bytes - offset) return;
+  throw DeviceError(std::string(copy) + " of " + std::to_string(bytes) + " bytes at " +
+                    std::to_string(offset) + ": the block has " + std::to_string(block.bytes));
 }
 
 }  // namespace
@@ -63,6 +108,8 @@ Arena::Arena(Device& device, const std::vector<std::uint64_t>& block_bytes)
     blocks_->list.push_back(make_buffer(context, bytes, usage, shared ? host : Memory::eDeviceLocal));
     if (shared) std::memset(blocks_->list.back().mapped, 0, bytes);
   }
+  if (context.properties.type == DeviceType::cpu)
+    check_reserve(std::accumulate(block_bytes.begin(), block_bytes.end(), std::uint64_t{0}));
   if (shared) return;
   blocks_->staging = make_buffer(context, staging_bytes, Usage::eTransferSrc | Usage::eTransferDst, host);
   run_commands(context, [&](const vk::raii::CommandBuffer& commands) {
@@ -80,6 +127,7 @@ std::vector<std::uint64_t> Arena::block_addresses() const {
 
 void Arena::upload(std::uint32_t block, std::uint64_t offset, std::span<const std::byte> bytes) {
   const Buffer& target = blocks_->list.at(block);
+  check_range(target, offset, bytes.size(), "upload");
   if (target.mapped) {
     std::ranges::copy(bytes, target.mapped + offset);
     return;
@@ -95,6 +143,7 @@ void Arena::upload(std::uint32_t block, std::uint64_t offset, std::span<const st
 
 void Arena::download(std::uint32_t block, std::uint64_t offset, std::span<std::byte> bytes) const {
   const Buffer& source = blocks_->list.at(block);
+  check_range(source, offset, bytes.size(), "download");
   if (source.mapped) {
     std::copy_n(source.mapped + offset, bytes.size(), bytes.data());
     return;

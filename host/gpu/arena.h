@@ -14,12 +14,13 @@ namespace coppice {
 // return.
 class Arena {
  public:
-  // Throws DeviceError, naming the size, when the device's memory is used up.
+  // Throws DeviceError, naming the size, when the device's memory is used up or the host can map no more.
   Arena(Device& device, const std::vector<std::uint64_t>& block_bytes);
   ~Arena();
 
   std::vector<std::uint64_t> block_addresses() const;
 
+  // Both throw DeviceError, and copy nothing, beyond the end of the block.
   void upload(std::uint32_t block, std::uint64_t offset, std::span<const std::byte> bytes);
   void download(std::uint32_t block, std::uint64_t offset, std::span<std::byte> bytes) const;
 

@@ -9,6 +9,7 @@ struct Buffer {
   vk::raii::DeviceMemory memory{nullptr};
   vk::raii::Buffer buffer{nullptr};
   std::byte* mapped = nullptr;  // null where the host cannot see it
+  std::uint64_t bytes = 0;
   std::uint64_t address = 0;
 };
 
@@ -30,24 +31,26 @@ void wait_for(const VulkanContext& context, const vk::raii::Fence& fence, double
 
 template <class Record>
 void run_commands(VulkanContext& context, Record record) {
-  auto commands = std::move(
-      vk::raii::CommandBuffers(context.device, {*context.command_pool, vk::CommandBufferLevel::ePrimary, 1})
-          .front());
-  commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
-  using Stage = vk::PipelineStageFlagBits2;
-  using Access = vk::AccessFlagBits2;
-  const vk::MemoryBarrier2 before(Stage::eAllCommands, Access::eMemoryWrite, Stage::eAllTransfer,
-                                  Access::eTransferRead | Access::eTransferWrite);
-  commands.pipelineBarrier2(vk::DependencyInfo({}, before));
-  record(commands);
-  const vk::MemoryBarrier2 after(Stage::eAllTransfer, Access::eTransferWrite,
-                                 Stage::eHost | Stage::eAllCommands,
-                                 Access::eHostRead | Access::eMemoryRead | Access::eMemoryWrite);
-  commands.pipelineBarrier2(vk::DependencyInfo({}, after));
-  commands.end();
-  const vk::raii::Fence fence(context.device, vk::FenceCreateInfo());
-  context.queue.submit(vk::SubmitInfo({}, {}, *commands), *fence);
-  wait_for(context, fence, 60);
+  with_device_errors(context, [&] {
+    auto commands = std::move(
+        vk::raii::CommandBuffers(context.device, {*context.command_pool, vk::CommandBufferLevel::ePrimary, 1})
+            .front());
+    commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+    using Stage = vk::PipelineStageFlagBits2;
+    using Access = vk::AccessFlagBits2;
+    const vk::MemoryBarrier2 before(Stage::eAllCommands, Access::eMemoryWrite, Stage::eAllTransfer,
+                                    Access::eTransferRead | Access::eTransferWrite);
+    commands.pipelineBarrier2(vk::DependencyInfo({}, before));
+    record(commands);
+    const vk::MemoryBarrier2 after(Stage::eAllTransfer, Access::eTransferWrite,
+                                   Stage::eHost | Stage::eAllCommands,
+                                   Access::eHostRead | Access::eMemoryRead | Access::eMemoryWrite);
+    commands.pipelineBarrier2(vk::DependencyInfo({}, after));
+    commands.end();
+    const vk::raii::Fence fence(context.device, vk::FenceCreateInfo());
+    context.queue.submit(vk::SubmitInfo({}, {}, *commands), *fence);
+    wait_for(context, fence, 60);
+  });
 }
 
 }  // namespace coppice

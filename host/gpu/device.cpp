@@ -189,7 +189,7 @@ void make_device(VulkanContext& context) {
   const vk::PushConstantRange push(vk::ShaderStageFlagBits::eCompute, 0, 128);
   context.pipeline_layout =
       vk::raii::PipelineLayout(context.device, vk::PipelineLayoutCreateInfo({}, {}, push));
-  const std::uint32_t bits = family->timestampValidBits;
+  const std::uint32_t bits = context.timestamps ? family->timestampValidBits : 0;
   context.timestamp_mask = bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
   context.properties = describe(context, bits);
 }
@@ -217,16 +217,19 @@ std::vector<DeviceListing> list_devices() {
     for (const auto& physical : vk::raii::PhysicalDevices(instance)) {
       devices.push_back(listing_of(physical, static_cast<std::uint32_t>(devices.size())));
     }
-  } catch (const vk::SystemError&) {
-    devices.clear();  // no loader, or a loader without any driver
+  } catch (const std::runtime_error&) {
+    devices.clear();  // no loader, which is no vk::SystemError, or a loader without any driver
   }
   return devices;
 }
 
-Device::Device(const DeviceOptions& options) : context_(std::make_unique<VulkanContext>()) {
-  VulkanContext& context = *context_;
-  context.like_a_gpu = options.like_a_gpu;
+Device::Device(const DeviceOptions& options) {
   try {
+    context_ = std::make_unique<VulkanContext>();
+    VulkanContext& context = *context_;
+    context.like_a_gpu = options.like_a_gpu;
+    const char* const no_timestamps = std::getenv("COPPICE_NO_TIMESTAMPS");
+    context.timestamps = options.timestamps && !(no_timestamps && *no_timestamps);
     context.instance = make_instance(context.loader, options.validate);
     if (options.validate) {
       using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
@@ -246,7 +249,10 @@ Device::Device(const DeviceOptions& options) : context_(std::make_unique<VulkanC
     context.physical = std::move(all[choose_device(listings, options.select)]);
     make_device(context);
     load_pipelines(context, options.pipeline_folder);
-  } catch (const vk::SystemError& error) {
+  } catch (const DeviceError&) {
+    throw;
+  } catch (const std::runtime_error& error) {
+    // vk::SystemError, or, without a loader, whatever vk::raii::Context throws.
     throw DeviceError(std::string("Vulkan: ") + error.what());
   }
 }

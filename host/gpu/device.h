@@ -10,7 +10,7 @@
 
 namespace coppice {
 
-// Whatever goes wrong with a device, in one line.
+// Whatever goes wrong with a device, in one line; no other exception leaves this folder but std::bad_alloc.
 struct DeviceError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -37,6 +37,9 @@ struct DeviceOptions {
   // a subgroup wait for each other.
   bool like_a_gpu = false;
   std::filesystem::path pipeline_folder{};  // compiled pipelines are kept here between runs; empty: nowhere
+  // Off: as a device without timestamps, for tests. Off, too, where COPPICE_NO_TIMESTAMPS is set and not
+  // empty.
+  bool timestamps = true;
 };
 
 struct DeviceProperties {

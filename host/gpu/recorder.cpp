@@ -104,11 +104,13 @@ struct Recorder::Commands {
   template <class Record>
   void step(const char* name, Record record) {
     if (ended) throw std::logic_error("recorder: already submitted");
-    if (context.labels) buffer.beginDebugUtilsLabelEXT(vk::DebugUtilsLabelEXT(name));
-    barrier();
-    record();
-    if (context.labels) buffer.endDebugUtilsLabelEXT();
-    if (timestamps == Timestamps::every_step) step_queries.push_back(stamp());
+    with_device_errors(context, [&] {
+      if (context.labels) buffer.beginDebugUtilsLabelEXT(vk::DebugUtilsLabelEXT(name));
+      barrier();
+      record();
+      if (context.labels) buffer.endDebugUtilsLabelEXT();
+      if (timestamps == Timestamps::every_step) step_queries.push_back(stamp());
+    });
   }
 
   void bind(const Kernel& kernel, std::span<const std::byte> push_constants) {
@@ -130,6 +132,8 @@ struct Recorder::Commands {
     fence = vk::raii::Fence(context.device, vk::FenceCreateInfo());
     ended = true;
   }
+
+  Times submit_and_wait(double limit_seconds);
 };
 
 Recorder::Recorder(Device& device, const Arena& arena, std::uint32_t step_limit, Timestamps timestamps)
@@ -137,15 +141,17 @@ Recorder::Recorder(Device& device, const Arena& arena, std::uint32_t step_limit,
   Commands& c = *commands_;
   c.timestamps = timestamps;
   c.query_limit = 2 * step_limit + 2;
-  c.buffer = std::move(vk::raii::CommandBuffers(
-                           c.context.device, {*c.context.command_pool, vk::CommandBufferLevel::ePrimary, 1})
-                           .front());
-  c.buffer.begin(vk::CommandBufferBeginInfo());
-  if (c.context.properties.timestamp_period_ns > 0) {
-    c.queries = vk::raii::QueryPool(c.context.device, {{}, vk::QueryType::eTimestamp, c.query_limit});
-    c.buffer.resetQueryPool(*c.queries, 0, c.query_limit);
-  }
-  c.stamp();
+  with_device_errors(c.context, [&] {
+    c.buffer = std::move(vk::raii::CommandBuffers(
+                             c.context.device, {*c.context.command_pool, vk::CommandBufferLevel::ePrimary, 1})
+                             .front());
+    c.buffer.begin(vk::CommandBufferBeginInfo());
+    if (c.context.properties.timestamp_period_ns > 0) {
+      c.queries = vk::raii::QueryPool(c.context.device, {{}, vk::QueryType::eTimestamp, c.query_limit});
+      c.buffer.resetQueryPool(*c.queries, 0, c.query_limit);
+    }
+    c.stamp();
+  });
 }
 
 Recorder::~Recorder() = default;
@@ -175,7 +181,11 @@ void Recorder::clear(std::uint32_t block, std::uint64_t offset, std::uint64_t by
 void Recorder::mark() { commands_->mark_queries.push_back(commands_->stamp()); }
 
 Recorder::Times Recorder::submit_and_wait(double limit_seconds) {
-  Commands& c = *commands_;
+  return with_device_errors(commands_->context, [&] { return commands_->submit_and_wait(limit_seconds); });
+}
+
+Recorder::Times Recorder::Commands::submit_and_wait(double limit_seconds) {
+  Commands& c = *this;
   if (!c.ended) c.end();
   c.context.device.resetFences(*c.fence);
   const auto start = std::chrono::steady_clock::now();
@@ -184,10 +194,7 @@ Recorder::Times Recorder::submit_and_wait(double limit_seconds) {
   const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - start;
 
   Times times{wall.count(), wall.count(), {}, {}};
-  if (!*c.queries) {
-    times.marks_ms.assign(c.mark_queries.size(), times.wall_ms);
-    return times;
-  }
+  if (!*c.queries) return times;
   const auto [result, ticks] = c.queries.getResults<std::uint64_t>(0, c.query_count, c.query_count * 8, 8,
                                                                    vk::QueryResultFlagBits::e64);
   const auto since = [&](std::uint32_t from, std::uint32_t to) {

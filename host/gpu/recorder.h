@@ -36,10 +36,11 @@ class Recorder {
   void mark();
 
   struct Times {
-    double total_ms;               // first to last timestamp; of the host clock where the device has none
-    double wall_ms;                // host clock around submit and wait
+    double total_ms;  // first to last timestamp; of the host clock where the device has none
+    double wall_ms;   // host clock around submit and wait
+    // Empty where the device has no timestamps.
     std::vector<double> marks_ms;  // from the start to each mark, in order
-    std::vector<double> steps_ms;  // each step, in order; empty unless Timestamps::every_step
+    std::vector<double> steps_ms;  // each step, in order; empty unless Timestamps::every_step, too
   };
 
   // Ends the recording at the first call. A device that is not done within the limit ends the program, with

@@ -38,9 +38,20 @@ struct VulkanContext {
   std::map<PipelineKey, vk::raii::Pipeline> pipelines;
   bool labels = false;  // debug labels can be recorded
   bool like_a_gpu = false;
+  bool timestamps = true;  // if the device has them
 
   // Index of a memory type among `allowed` with all of `flags`; throws DeviceError if there is none.
   std::uint32_t memory_type(std::uint32_t allowed, vk::MemoryPropertyFlags flags) const;
 };
+
+// Calls `action`; what Vulkan throws becomes a DeviceError that names the device.
+template <class Action>
+auto with_device_errors(const VulkanContext& context, Action action) {
+  try {
+    return action();
+  } catch (const vk::SystemError& error) {
+    throw DeviceError(context.properties.name + ": " + error.what());
+  }
+}
 
 }  // namespace coppice

@@ -1,15 +1,11 @@
 #include "pipeline/ray_tracing.h"
 
+#include "pipeline/bounded_submits.h"
+#include "pipeline/trace_pieces.h"
 #include "pipeline/traffic.h"
 #include "stages/errors.h"
 
 namespace coppice {
-
-namespace {
-
-constexpr double limit_seconds = 600;
-
-}  // namespace
 
 RayTracing::Slots RayTracing::plan(Layout& layout, std::size_t nodes, std::size_t triangles,
                                    std::uint32_t most_rays, bool wide) {
@@ -27,7 +23,8 @@ RayTracing::Slots RayTracing::plan(Layout& layout, std::size_t nodes, std::size_
 
 RayTracing::RayTracing(Device& device, std::span<const Node> nodes, std::span<const Triangle> triangles,
                        std::uint32_t most_rays, bool wide)
-    : layout_(device.properties().max_block_bytes),
+    : device_(device),
+      layout_(device.properties().max_block_bytes),
       slots_(plan(layout_, nodes.size(), triangles.size(), most_rays, wide)),
       gpu_(device, layout_),
       cpu_(layout_) {
@@ -44,7 +41,7 @@ void RayTracing::convert() {
   Chain on_device = gpu_.chain(), by_twins = cpu_.chain();
   gpu_.upload(slots_.tree.state, state);
   append_wide(on_device, slots_.tree, *slots_.wide);
-  gpu_.record(on_device.steps()).submit_and_wait(limit_seconds);
+  gpu_.record(on_device.steps()).submit_and_wait(piece_limit_seconds);
   cpu_.upload(slots_.tree.state, state);
   append_wide(by_twins, slots_.tree, *slots_.wide);
   cpu_.run(by_twins.steps());
@@ -54,12 +51,18 @@ void RayTracing::convert() {
 
 template <class Executor>
 void RayTracing::upload_rays(Executor& executor, std::span<const Ray> rays) const {
+  if (rays.size() > slots_.rays.rays.count) {
+    throw LayoutError("ray tracing planned for " + std::to_string(slots_.rays.rays.count) + " rays got " +
+                      std::to_string(rays.size()));
+  }
   std::vector<Hit> misses;
   misses.reserve(rays.size());
   for (const Ray& ray : rays) misses.push_back({ray.t_max, NO_TRIANGLE, 0, 0});
   executor.upload(slots_.rays.rays, rays);
   executor.upload(slots_.rays.hits, std::span<const Hit>(misses));
   executor.upload(slots_.tree.state, std::span<const BuildState>(&state_, 1));
+  const TraceCounters none{};
+  executor.upload(slots_.rays.counters, std::span<const TraceCounters>(&none, 1));
 }
 
 template <class Executor>
@@ -71,35 +74,41 @@ TracedRays RayTracing::result(Executor& executor, std::size_t ray_count) const {
   return traced;
 }
 
-Chain RayTracing::closest_hits(Chain chain, std::size_t ray_count, const TraceOptions& options) const {
-  chain.clear(slots_.rays.counters);
-  append_closest_hits(chain, slots_.tree, slots_.rays, static_cast<std::uint32_t>(ray_count), options);
-  return chain;
+double RayTracing::trace(std::size_t ray_count, const TraceOptions& options) {
+  const HitPieces pieces(slots_.tree, slots_.rays, static_cast<std::uint32_t>(ray_count), options);
+  const Way way = options.brute_force ? Way::brute_force : options.wide ? Way::wide : Way::binary;
+  Pace& pace =
+      paces_.try_emplace(way, submit_target_ms(device_.properties()), first_work(options)).first->second;
+  double ms = 0;
+  submit_pieces(gpu_, pieces, pace, Timestamps::total,
+                [&](const SubmittedPiece& piece) { ms += piece.times.total_ms; });
+  return ms;
 }
 
 TracedRays RayTracing::on_device(std::span<const Ray> rays, const TraceOptions& options) {
   upload_rays(gpu_, rays);
-  const Chain chain = closest_hits(gpu_.chain(), rays.size(), options);
-  const Recorder::Times times =
-      gpu_.record(chain.steps(), Timestamps::every_step).submit_and_wait(limit_seconds);
+  const double ms = trace(rays.size(), options);
   TracedRays traced = result(gpu_, rays.size());
-  traced.ms = times.steps_ms.empty() ? times.total_ms : times.total_ms - times.steps_ms[0];  // less the clear
+  traced.ms = ms;
   return traced;
 }
 
 TracedRays RayTracing::by_twins(std::span<const Ray> rays, const TraceOptions& options) {
   upload_rays(cpu_, rays);
-  cpu_.run(closest_hits(cpu_.chain(), rays.size(), options).steps());
+  Chain chain = cpu_.chain();
+  append_closest_hits(chain, slots_.tree, slots_.rays, static_cast<std::uint32_t>(rays.size()), options);
+  cpu_.run(chain.steps());
   return result(cpu_, rays.size());
 }
 
 std::vector<Ray> RayTracing::bounce(std::span<const Ray> rays, const TraceOptions& options,
                                     std::uint32_t seed) {
   upload_rays(gpu_, rays);
-  Chain chain = closest_hits(gpu_.chain(), rays.size(), options);
+  trace(rays.size(), options);
+  Chain chain = gpu_.chain();
   append_bounce(chain, slots_.tree, slots_.rays, slots_.bounced, static_cast<std::uint32_t>(rays.size()),
                 seed);
-  gpu_.record(chain.steps()).submit_and_wait(limit_seconds);
+  gpu_.record(chain.steps()).submit_and_wait(piece_limit_seconds);
   return gpu_.read(Slot<Ray>{slots_.bounced.rays.place, rays.size()});
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "pipeline/pace.h"
 #include "pipeline/trace.h"
 #include "pipeline/wide.h"
 #include "stages/cpu_executor.h"
@@ -22,10 +24,13 @@ struct TracedRays {
 class RayTracing {
  public:
   // The tree is uploaded once, and with `wide` converted once, for options with a wide tree; `nodes` may be
-  // empty for brute force. Throws DeviceError if it does not fit, LayoutError if a slot is too large.
+  // empty for brute force. Throws DeviceError if it does not fit, LayoutError if a slot is too large. The
+  // device must outlive it.
   RayTracing(Device& device, std::span<const Node> nodes, std::span<const Triangle> triangles,
              std::uint32_t most_rays, bool wide = false);
 
+  // At most `most_rays` rays: else they throw LayoutError. On the device in submits of bounded time, with
+  // Interrupted between two where an InterruptionGuard noted a signal.
   TracedRays on_device(std::span<const Ray> rays, const TraceOptions& options);
   TracedRays by_twins(std::span<const Ray> rays, const TraceOptions& options);
 
@@ -43,10 +48,13 @@ class RayTracing {
   void convert();
   template <class Executor>
   void upload_rays(Executor& executor, std::span<const Ray> rays) const;
-  Chain closest_hits(Chain chain, std::size_t ray_count, const TraceOptions& options) const;
+  double trace(std::size_t ray_count, const TraceOptions& options);  // ms of the kernels
   template <class Executor>
   TracedRays result(Executor& executor, std::size_t ray_count) const;
 
+  enum class Way { binary, wide, brute_force };
+  Device& device_;
+  std::map<Way, Pace> paces_;
   BuildState state_{};
   Layout layout_;
   Slots slots_;

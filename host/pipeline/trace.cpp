@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "pipeline/trace_pieces.h"
 #include "stages/divide_up.h"
 #include "stages/stages.h"
 
@@ -17,6 +18,53 @@ constexpr std::uint32_t max_band_rays = 1u << 20;
 
 uvec3 groups_of(std::uint32_t count, std::uint32_t group) { return {divide_up(count, group), 1, 1}; }
 
+void append_walk(Chain& chain, const TreeSlots& tree, const RaySlots& slots, const RayRange& range,
+                 const TraceOptions& options) {
+  const auto triangles = chain.at(tree.triangles);
+  const auto rays = chain.at(slots.rays, range.first);
+  const auto hits = chain.at(slots.hits, range.first);
+  const auto counters = chain.at(slots.counters);
+  if (!options.wide) {
+    chain.run(stages::trace_closest,
+              {chain.at(tree.nodes), triangles, rays, hits, counters, chain.at(tree.state), range.count,
+               options.stack_entries, options.triangle_test, options.box_test},
+              groups_of(range.count, TRACE_GROUP),
+              {options.max_turns, options.visits_per_turn, options.stack_entries, options.triangle_test,
+               options.box_test});
+    return;
+  }
+  if (!can_trace_wide(options))
+    throw std::invalid_argument("the wide tree is traced with the watertight and the robust test");
+  const TraceWideArgs args{chain.at(tree.wide_nodes),
+                           chain.at(tree.wide_counts),
+                           chain.at(tree.nodes),
+                           triangles,
+                           rays,
+                           hits,
+                           counters,
+                           chain.at(tree.state),
+                           range.count,
+                           0};
+  if (options.packets) {
+    chain.run(stages::trace_wide, args, groups_of(range.count, TRACE_PACKET), {options.max_turns});
+  } else {
+    chain.run(stages::trace_wide_single, args, groups_of(range.count, TRACE_BLOCK), {options.max_turns});
+  }
+}
+
+// One slice of the triangles; returns how many tests it makes.
+std::uint64_t append_slice(Chain& chain, const TreeSlots& tree, const RaySlots& slots, const RayRange& range,
+                           const TraceOptions& options) {
+  const std::uint32_t count = std::min(BRUTE_FORCE_SLICE, tree.triangle_count - range.next_triangle);
+  const bool last = range.next_triangle + count == tree.triangle_count;
+  chain.run(
+      stages::trace_brute_force,
+      {chain.at(tree.triangles), chain.at(slots.rays, range.first), chain.at(slots.hits, range.first),
+       chain.at(slots.counters), range.count, range.next_triangle, count, last, options.triangle_test, 0},
+      groups_of(range.count, TRACE_GROUP), {options.triangle_test});
+  return std::uint64_t{range.count} * std::max(count, 1u);
+}
+
 }  // namespace
 
 bool can_trace_wide(const TraceOptions& options) {
@@ -24,51 +72,33 @@ bool can_trace_wide(const TraceOptions& options) {
          options.box_test == BOX_ROBUST;
 }
 
+bool has_closest_hits(const TreeSlots& tree, const RayRange& range, const TraceOptions& options) {
+  return range.next_triangle >= (options.brute_force ? std::max(tree.triangle_count, 1u) : 1u);
+}
+
+std::uint64_t append_closest_hits(Chain& chain, const TreeSlots& tree, const RaySlots& slots, RayRange& range,
+                                  const TraceOptions& options, std::uint64_t work) {
+  if (options.brute_force && options.wide)
+    throw std::invalid_argument("the wide tree is traced with the watertight and the robust test");
+  if (!options.brute_force) {
+    append_walk(chain, tree, slots, range, options);
+    range.next_triangle = std::max(tree.triangle_count, 1u);
+    return range.count;
+  }
+  std::uint64_t appended = 0;
+  do {
+    appended += append_slice(chain, tree, slots, range, options);
+    range.next_triangle +=
+        std::max(std::min(BRUTE_FORCE_SLICE, tree.triangle_count - range.next_triangle), 1u);
+  } while (!has_closest_hits(tree, range, options) &&
+           appended + std::uint64_t{range.count} * BRUTE_FORCE_SLICE <= work);
+  return appended;
+}
+
 void append_closest_hits(Chain& chain, const TreeSlots& tree, const RaySlots& slots, std::uint32_t ray_count,
                          const TraceOptions& options) {
-  const uvec3 groups = groups_of(ray_count, TRACE_GROUP);
-  const auto triangles = chain.at(tree.triangles);
-  const auto rays = chain.at(slots.rays);
-  const auto hits = chain.at(slots.hits);
-  const auto counters = chain.at(slots.counters);
-  if (options.wide) {
-    if (!can_trace_wide(options))
-      throw std::invalid_argument("the wide tree is traced with the watertight and the robust test");
-    const TraceWideArgs args{chain.at(tree.wide_nodes),
-                             chain.at(tree.wide_counts),
-                             chain.at(tree.nodes),
-                             triangles,
-                             rays,
-                             hits,
-                             counters,
-                             chain.at(tree.state),
-                             ray_count,
-                             0};
-    if (options.packets) {
-      chain.run(stages::trace_wide, args, groups_of(ray_count, TRACE_PACKET), {options.max_turns});
-    } else {
-      chain.run(stages::trace_wide_single, args, groups_of(ray_count, TRACE_BLOCK), {options.max_turns});
-    }
-    return;
-  }
-  if (!options.brute_force) {
-    chain.run(stages::trace_closest,
-              {chain.at(tree.nodes), triangles, rays, hits, counters, chain.at(tree.state), ray_count,
-               options.stack_entries, options.triangle_test, options.box_test},
-              groups,
-              {options.max_turns, options.visits_per_turn, options.stack_entries, options.triangle_test,
-               options.box_test});
-    return;
-  }
-  std::uint32_t first = 0;
-  do {
-    const std::uint32_t count = std::min(BRUTE_FORCE_SLICE, tree.triangle_count - first);
-    const bool last = first + count == tree.triangle_count;
-    chain.run(stages::trace_brute_force,
-              {triangles, rays, hits, counters, ray_count, first, count, last, options.triangle_test, 0},
-              groups, {options.triangle_test});
-    first += count;
-  } while (first < tree.triangle_count);
+  RayRange range{0, ray_count};
+  append_closest_hits(chain, tree, slots, range, options, ~std::uint64_t{0});
 }
 
 void append_bounce(Chain& chain, const TreeSlots& tree, const RaySlots& slots, const RaySlots& bounced,
@@ -110,27 +140,8 @@ TracePlan plan_trace(Layout& layout, const TreeSlots& tree, std::uint32_t materi
 }
 
 void append_trace(Chain& chain, const TreeSlots& tree, const TracePlan& plan) {
-  chain.clear(plan.counters);
-  const auto rays = chain.at(plan.rays);
-  const auto hits = chain.at(plan.hits);
-  const auto radiance = chain.at(plan.radiance);
-  const auto pixels = static_cast<std::uint32_t>(plan.image.count);
-  for (std::uint32_t first = 0; first < pixels; first += plan.band_rays) {
-    const std::uint32_t count = std::min(plan.band_rays, pixels - first);
-    for (std::uint32_t sample = 0; sample < plan.options.samples; ++sample) {
-      chain.run(stages::camera_rays, {chain.at(plan.film), rays, hits, first, count, sample, 0},
-                groups_of(count, CAMERA_RAYS_GROUP));
-      append_closest_hits(chain, tree, plan, count, plan.options);
-      chain.run(stages::shade,
-                {chain.at(tree.triangles), chain.at(plan.material_index), chain.at(plan.materials),
-                 chain.at(plan.lighting), rays, hits, radiance, count, sample},
-                groups_of(count, SHADE_GROUP), {plan.options.directional_light});
-    }
-    chain.run(
-        stages::resolve,
-        {chain.at(plan.film), radiance, chain.at(plan.srgb_thresholds), chain.at(plan.image), first, count},
-        groups_of(count, RESOLVE_GROUP));
-  }
+  TracePieces pieces(tree, plan);
+  while (!pieces.done()) pieces.append(chain, ~std::uint64_t{0});
 }
 
 }  // namespace coppice

@@ -60,6 +60,22 @@ TracePlan plan_trace(Layout& layout, const TreeSlots& tree, std::uint32_t materi
 void append_closest_hits(Chain& chain, const TreeSlots& tree, const RaySlots& slots, std::uint32_t ray_count,
                          const TraceOptions& options);
 
+// Rays next to each other in their slots, whose closest hits are looked for together.
+struct RayRange {
+  std::uint32_t first = 0, count = 0;
+  std::uint32_t next_triangle = 0;  // of brute force: those before have been tested
+};
+
+// As much of the same, for the rays of a range, as `work` allows, though at least one step. Returns the work
+// of what was appended: in rays, by brute force in tests of triangles. Ranges that begin and end at multiples
+// of RANGE_RAYS (the last rays excepted) give the same hits and counters as all rays at once.
+std::uint64_t append_closest_hits(Chain& chain, const TreeSlots& tree, const RaySlots& slots, RayRange& range,
+                                  const TraceOptions& options, std::uint64_t work);
+bool has_closest_hits(const TreeSlots& tree, const RayRange& range, const TraceOptions& options);
+
+inline constexpr std::uint32_t RANGE_RAYS = TRACE_BLOCK;
+static_assert(RANGE_RAYS % TRACE_PACKET == 0 && RANGE_RAYS % TRACE_GROUP == 0);
+
 // From the hits of the first `ray_count` rays one ray each, random by `seed`, with no hit yet.
 void append_bounce(Chain& chain, const TreeSlots& tree, const RaySlots& slots, const RaySlots& bounced,
                    std::uint32_t ray_count, std::uint32_t seed);

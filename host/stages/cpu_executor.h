@@ -20,8 +20,10 @@ class CpuExecutor {
     for (const Step& step : steps) run(step);
   }
 
+  // Throws LayoutError for more values than the slot holds.
   template <class T>
   void upload(const Slot<T>& slot, std::span<const T> values) {
+    check_fits(slot, values.size());
     if (!values.empty()) std::memcpy(at(slot.place), values.data(), values.size_bytes());
   }
 

@@ -19,8 +19,10 @@ class GpuExecutor {
 
   Recorder record(std::span<const Step> steps, Timestamps timestamps = Timestamps::total);
 
+  // Throws LayoutError for more values than the slot holds.
   template <class T>
   void upload(const Slot<T>& slot, std::span<const T> values) {
+    check_fits(slot, values.size());
     arena_.upload(slot.place.block, slot.place.offset, std::as_bytes(values));
   }
 

@@ -4,6 +4,12 @@
 
 namespace coppice {
 
+void fail_to_fit(Place place, std::uint64_t slot_count, std::uint64_t count, std::uint64_t element_bytes) {
+  throw LayoutError("upload of " + std::to_string(count) + " elements of " + std::to_string(element_bytes) +
+                    " bytes into a slot of " + std::to_string(slot_count) + ", block " +
+                    std::to_string(place.block) + ", offset " + std::to_string(place.offset));
+}
+
 Place Layout::reserve(SlotListing slot) {
   constexpr std::uint64_t alignment = 256;
   const std::uint64_t bytes = divide_up(slot.bytes(), alignment) * alignment + guard_bytes;

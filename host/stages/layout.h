@@ -35,6 +35,15 @@ struct LayoutError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+[[noreturn]] void fail_to_fit(Place place, std::uint64_t slot_count, std::uint64_t count,
+                              std::uint64_t element_bytes);
+
+// Throws LayoutError, with both counts, if the slot does not hold so many elements.
+template <class T>
+void check_fits(const Slot<T>& slot, std::uint64_t count) {
+  if (count > slot.count) fail_to_fit(slot.place, slot.count, count, sizeof(T));
+}
+
 // Hands out places for slots, in blocks no larger than a device allocates at once. Behind every slot lies a
 // guard, so that a write past the end of one is seen and is not another's first word.
 class Layout {

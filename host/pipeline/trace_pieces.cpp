@@ -1,0 +1,99 @@
+#include "pipeline/trace_pieces.h"
+
+#include <algorithm>
+
+#include "stages/divide_up.h"
+#include "stages/stages.h"
+
+namespace coppice {
+
+namespace {
+
+uvec3 groups_of(std::uint32_t count, std::uint32_t group) { return {divide_up(count, group), 1, 1}; }
+
+// Of the least step: a ray, or its tests of one slice of the triangles.
+std::uint64_t step_work(const TreeSlots& tree, const TraceOptions& options) {
+  return options.brute_force ? std::clamp(tree.triangle_count, 1u, BRUTE_FORCE_SLICE) : 1;
+}
+
+RayRange next_range(const TreeSlots& tree, const TraceOptions& options, std::uint32_t first,
+                    std::uint32_t end, std::uint64_t work) {
+  return {first, std::min(range_rays(tree, options, work), end - first), 0};
+}
+
+bool has_room(const TreeSlots& tree, const TraceOptions& options, std::uint64_t appended,
+              std::uint64_t work) {
+  if (appended == 0) return true;
+  return appended < work && (work - appended) / step_work(tree, options) >= RANGE_RAYS;
+}
+
+}  // namespace
+
+std::uint32_t range_rays(const TreeSlots& tree, const TraceOptions& options, std::uint64_t work) {
+  constexpr std::uint64_t most = 1u << 30;
+  const std::uint64_t rays = std::min(work / step_work(tree, options), most);
+  return static_cast<std::uint32_t>(std::max<std::uint64_t>(rays / RANGE_RAYS, 1)) * RANGE_RAYS;
+}
+
+std::uint64_t work_of(const TreeSlots& tree, const TraceOptions& options, std::uint64_t rays) {
+  return rays * (options.brute_force ? std::max(tree.triangle_count, 1u) : 1);
+}
+
+std::uint64_t HitPieces::append(Chain& chain, std::uint64_t work) {
+  std::uint64_t appended = 0;
+  while (!done() && has_room(tree_, options_, appended, work)) {
+    if (range_.count == 0) range_ = next_range(tree_, options_, range_.first, ray_count_, work - appended);
+    appended += append_closest_hits(chain, tree_, slots_, range_, options_, work - appended);
+    if (!has_closest_hits(tree_, range_, options_)) break;
+    range_ = {range_.first + range_.count, 0, 0};
+  }
+  return appended;
+}
+
+std::uint32_t TracePieces::band_rays() const {
+  return std::min(plan_.band_rays, static_cast<std::uint32_t>(plan_.image.count) - band_first_);
+}
+
+void TracePieces::open_range(Chain& chain, std::uint64_t work) {
+  range_ = next_range(tree_, plan_.options, range_.first, band_rays(), work);
+  chain.run(stages::camera_rays,
+            {chain.at(plan_.film), chain.at(plan_.rays, range_.first), chain.at(plan_.hits, range_.first),
+             band_first_ + range_.first, range_.count, sample_, 0},
+            groups_of(range_.count, CAMERA_RAYS_GROUP));
+}
+
+void TracePieces::close_range(Chain& chain) {
+  const auto radiance = chain.at(plan_.radiance, range_.first);
+  chain.run(stages::shade,
+            {chain.at(tree_.triangles), chain.at(plan_.material_index), chain.at(plan_.materials),
+             chain.at(plan_.lighting), chain.at(plan_.rays, range_.first), chain.at(plan_.hits, range_.first),
+             radiance, range_.count, sample_},
+            groups_of(range_.count, SHADE_GROUP), {plan_.options.directional_light});
+  if (sample_ + 1 == plan_.options.samples) {
+    chain.run(stages::resolve,
+              {chain.at(plan_.film), radiance, chain.at(plan_.srgb_thresholds), chain.at(plan_.image),
+               band_first_ + range_.first, range_.count},
+              groups_of(range_.count, RESOLVE_GROUP));
+  }
+  range_ = {range_.first + range_.count, 0, 0};
+  if (range_.first < band_rays()) return;
+  range_ = {};
+  if (++sample_ < plan_.options.samples) return;
+  sample_ = 0;
+  band_first_ += band_rays();
+}
+
+std::uint64_t TracePieces::append(Chain& chain, std::uint64_t work) {
+  if (!cleared_) chain.clear(plan_.counters);
+  cleared_ = true;
+  std::uint64_t appended = 0;
+  while (!done() && has_room(tree_, plan_.options, appended, work)) {
+    if (range_.count == 0) open_range(chain, work - appended);
+    appended += append_closest_hits(chain, tree_, plan_, range_, plan_.options, work - appended);
+    if (!has_closest_hits(tree_, range_, plan_.options)) break;
+    close_range(chain);
+  }
+  return appended;
+}
+
+}  // namespace coppice

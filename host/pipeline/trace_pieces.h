@@ -1,0 +1,70 @@
+#pragma once
+
+#include "pipeline/trace.h"
+
+namespace coppice {
+
+// A trace cut into pieces, each for a submit of its own, so that no submit takes long. However it is cut,
+// every ray and every pixel goes through the same steps in the same order: the bits are the same.
+//
+// Work is counted in rays, by brute force in tests of triangles.
+
+// Rays that a range of so much work may have: a multiple of RANGE_RAYS, at least one of them.
+std::uint32_t range_rays(const TreeSlots& tree, const TraceOptions& options, std::uint64_t work);
+
+// Work of the closest hits of so many rays.
+std::uint64_t work_of(const TreeSlots& tree, const TraceOptions& options, std::uint64_t rays);
+
+// Of the first submit, when nothing is known of the device's speed.
+inline std::uint64_t first_work(const TraceOptions& options) { return options.brute_force ? 1u << 20 : 4096; }
+
+// The closest hits of the first rays of their slots.
+class HitPieces {
+ public:
+  HitPieces(const TreeSlots& tree, const RaySlots& slots, std::uint32_t ray_count,
+            const TraceOptions& options)
+      : tree_(tree), slots_(slots), options_(options), ray_count_(ray_count) {}
+
+  bool done() const { return range_.count == 0 && range_.first == ray_count_; }
+  std::uint64_t work() const { return work_of(tree_, options_, ray_count_); }
+
+  // Appends the next piece: at least one step, otherwise at most `work`. Returns its work.
+  std::uint64_t append(Chain& chain, std::uint64_t work);
+
+ private:
+  TreeSlots tree_;
+  RaySlots slots_;
+  TraceOptions options_;
+  std::uint32_t ray_count_;
+  RayRange range_;  // no rays: the next one is yet to be opened
+};
+
+// A picture: camera rays, closest hits, shading, sRGB.
+class TracePieces {
+ public:
+  // `first_pixel`: those before it, in the order of FILM_STRIP, are left out; a multiple of RANGE_RAYS.
+  TracePieces(const TreeSlots& tree, const TracePlan& plan, std::uint32_t first_pixel = 0)
+      : tree_(tree), plan_(plan), band_first_(first_pixel) {}
+
+  bool done() const { return band_first_ >= plan_.image.count; }
+  std::uint64_t work() const {
+    return work_of(tree_, plan_.options, plan_.image.count * plan_.options.samples);
+  }
+
+  // As HitPieces::append.
+  std::uint64_t append(Chain& chain, std::uint64_t work);
+
+ private:
+  std::uint32_t band_rays() const;
+  void open_range(Chain& chain, std::uint64_t work);
+  void close_range(Chain& chain);
+
+  TreeSlots tree_;
+  TracePlan plan_;
+  bool cleared_ = false;
+  std::uint32_t band_first_;  // pixel; a band goes through all its samples before the next one
+  std::uint32_t sample_ = 0;
+  RayRange range_;  // of the band; no rays: the next one is yet to be opened
+};
+
+}  // namespace coppice

@@ -1,0 +1,166 @@
+// A trace that is cut into pieces gives the bits and the counters of the whole, wherever it is cut. By the
+// twins, so that it needs no device.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <functional>
+#include <optional>
+#include <random>
+
+#include "apps/frame.h"
+#include "builders/ploc.h"
+#include "pipeline/trace_pieces.h"
+#include "pipeline/wide.h"
+#include "scene/hard_cases.h"
+#include "stages/cpu_executor.h"
+
+namespace coppice {
+namespace {
+
+struct Traced {
+  std::vector<uint> image;
+  std::vector<uint> counters;
+  std::uint64_t work = 0;
+  int pieces = 0;
+
+  bool same_bits(const Traced& other) const { return image == other.image && counters == other.counters; }
+};
+
+// A scene with its tree, traced by pieces of the work that `next_work` says.
+class CutTrace {
+ public:
+  CutTrace(std::uint32_t triangle_count, const TraceOptions& options)
+      : arrays_(scene_arrays(find_hard_case("sphere")->make(triangle_count, 1))), options_(options) {}
+
+  std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(arrays_.triangles.size()); }
+
+  Traced run(const std::function<std::uint64_t()>& next_work) const {
+    const Bvh bvh = build_ploc(arrays_.triangles, {});
+    Layout layout;
+    TreeSlots tree = plan_tree(layout, triangle_count(), bvh.nodes.size());
+    std::optional<WidePlan> wide;
+    if (options_.wide) wide = plan_wide(layout, tree);
+    const TracePlan plan =
+        plan_trace(layout, tree, static_cast<std::uint32_t>(arrays_.materials.size()), options_);
+    CpuExecutor executor(layout);
+    const Scene scene = find_hard_case("sphere")->make(triangle_count(), 1);
+    upload_frame(executor, tree, plan, arrays_,
+                 make_film(scene, {}, options_.width, options_.height, options_.samples));
+    BuildState state{};
+    state.active_count = bvh.active_count;
+    executor.upload(tree.nodes, std::span<const Node>(bvh.nodes));
+    executor.upload(tree.state, std::span<const BuildState>(&state, 1));
+    Chain conversion = executor.chain();
+    if (wide) append_wide(conversion, tree, *wide);
+    executor.run(conversion.steps());
+
+    Traced traced;
+    TracePieces pieces(tree, plan);
+    while (!pieces.done()) {
+      const std::uint64_t most = next_work();
+      Chain chain = executor.chain();
+      const std::uint64_t work = pieces.append(chain, most);
+      EXPECT_GT(work, 0u);
+      EXPECT_LE(work, std::max(most, least_work())) << "of " << most;
+      executor.run(chain.steps());
+      traced.work += work;
+      ++traced.pieces;
+    }
+    EXPECT_EQ(traced.work, pieces.work());
+    traced.image = executor.read(plan.image);
+    const TraceCounters counters = executor.read(plan.counters)[0];
+    traced.counters.resize(sizeof counters / sizeof(uint));
+    std::memcpy(traced.counters.data(), &counters, sizeof counters);
+    return traced;
+  }
+
+  Traced whole() const {
+    return run([] { return ~std::uint64_t{0}; });
+  }
+
+ private:
+  // Of one step of the least range; a range that is open keeps its rays.
+  std::uint64_t least_work() const {
+    return options_.brute_force ? most_open_rays * std::min(BRUTE_FORCE_SLICE, triangle_count()) : RANGE_RAYS;
+  }
+
+  static constexpr std::uint64_t most_open_rays = 8192;
+  SceneArrays arrays_;
+  TraceOptions options_;
+};
+
+TraceOptions options_of(std::uint32_t width, std::uint32_t height, std::uint32_t samples) {
+  TraceOptions options;
+  options.width = width;
+  options.height = height;
+  options.samples = samples;
+  return options;
+}
+
+void expect_same_however_cut(const CutTrace& trace, std::uint64_t most_work) {
+  const Traced whole = trace.whole();
+  EXPECT_EQ(whole.pieces, 1);
+  EXPECT_TRUE(std::ranges::any_of(whole.image, [&](uint pixel) { return pixel != whole.image[0]; }));
+  const Traced least = trace.run([] { return std::uint64_t{1}; });
+  EXPECT_GT(least.pieces, 1);
+  EXPECT_TRUE(least.same_bits(whole)) << "in the least pieces";
+  std::mt19937 random(1);
+  for (int i = 0; i < 3; ++i) {
+    const Traced cut = trace.run([&] { return 1 + random() % most_work; });
+    EXPECT_TRUE(cut.same_bits(whole)) << i;
+  }
+}
+
+TEST(TracePieces, OfTheBinaryTree) { expect_same_however_cut({3000, options_of(83, 61, 3)}, 5000); }
+
+TEST(TracePieces, OfTheWideTreeInPackets) {
+  TraceOptions options = options_of(83, 61, 3);
+  options.wide = true;
+  expect_same_however_cut({3000, options}, 5000);
+}
+
+TEST(TracePieces, OfTheWideTreeRayByRay) {
+  TraceOptions options = options_of(83, 61, 3);
+  options.wide = true;
+  options.packets = false;
+  expect_same_however_cut({3000, options}, 5000);
+}
+
+TEST(TracePieces, OfBruteForceWithinTheSlicesOfItsTriangles) {
+  TraceOptions options = options_of(17, 16, 2);
+  options.brute_force = true;
+  const CutTrace trace(BRUTE_FORCE_SLICE + 1000, options);
+  ASSERT_GT(trace.triangle_count(), BRUTE_FORCE_SLICE);
+  expect_same_however_cut(trace, std::uint64_t{200} * trace.triangle_count());
+}
+
+TEST(TracePieces, OfAPictureOfMoreThanOneBand) {
+  const CutTrace trace(300, options_of(1027, 1030, 1));
+  const Traced whole = trace.whole();
+  std::mt19937 random(2);
+  EXPECT_TRUE(trace.run([&] { return 1 + random() % 600000; }).same_bits(whole));
+}
+
+// Pieces do not grow with the samples: neither do the memory nor the time of one.
+TEST(TracePieces, StepsOfAPieceFollowFromItsWorkAlone) {
+  TraceOptions options = options_of(1024, 768, 65536);
+  Layout layout;
+  const TreeSlots tree = plan_tree(layout, 100, 199);
+  const TracePlan plan = plan_trace(layout, tree, 1, options);
+  TracePieces pieces(tree, plan);
+  for (int i = 0; i < 100; ++i) {
+    Chain chain(std::vector<std::uint64_t>(layout.block_bytes().size(), 0));
+    pieces.append(chain, 1 << 20);
+    EXPECT_LE(chain.steps().size(), 10u);
+  }
+  EXPECT_FALSE(pieces.done());
+}
+
+TEST(HitPieces, NoRaysAreNoPieces) {
+  const TreeSlots tree{};
+  EXPECT_TRUE(HitPieces(tree, RaySlots{}, 0, {}).done());
+}
+
+}  // namespace
+}  // namespace coppice
