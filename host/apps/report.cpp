@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <iostream>
 
 #include "analysis/tree_hash.h"
-#include "scene/input_error.h"
 #include "scene/write_file.h"
 
 namespace coppice {
@@ -16,6 +14,15 @@ Spread spread_of(std::vector<double> values) {
   const double median = values.size() % 2 ? values[half] : (values[half - 1] + values[half]) / 2;
   return {median, values.front(), values.back()};
 }
+
+namespace {
+
+// Names of files and devices need not be UTF-8, JSON must be: what is none becomes U+FFFD.
+std::string text_of(const Json& json, int indent) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
 
 Json to_json(const BuildReport& report) {
   Json json = {{"scene", report.scene},
@@ -86,11 +93,11 @@ void print_build(const BuildReport& report) {
 
 void write_json(const std::string& path, const Json& json) {
   if (path.empty()) return;
+  const std::string text = text_of(json, 2) + "\n";
   if (path == "-") {
-    std::cout << json.dump(2) << std::endl;
-    if (!std::cout) throw InputError("cannot write the report to stdout");
+    std::fputs(text.c_str(), stdout);  // main says it if that fails
   } else {
-    write_file(path, json.dump(2) + "\n");
+    write_file(path, text);
   }
 }
 
@@ -108,7 +115,7 @@ void write_trace_events(const std::string& path, const KernelSplit& split) {
                       {"tid", 1}});
     start_us += duration_us;
   }
-  write_file(path, Json{{"traceEvents", events}, {"displayTimeUnit", "ms"}}.dump() + "\n");
+  write_file(path, text_of({{"traceEvents", events}, {"displayTimeUnit", "ms"}}, -1) + "\n");
 }
 
 }  // namespace coppice

@@ -38,7 +38,8 @@ struct BuildReport {
 Json to_json(const BuildReport& report);
 void print_build(const BuildReport& report);
 
-// Writes to the file, or to stdout for "-"; nothing for "". Throws InputError naming the file.
+// Writes to the file, or to stdout for "-"; nothing for "". Bytes of names that are no UTF-8 become U+FFFD.
+// Throws InputError naming the file.
 void write_json(const std::string& path, const Json& json);
 
 // Chrome trace events of a timed run. Throws InputError naming the file.
