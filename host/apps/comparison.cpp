@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "apps/comparison_text.h"
+#include "pipeline/build.h"
 
 namespace coppice {
 
@@ -133,6 +134,7 @@ ComparisonRow comparison_row(const std::string& builder, const Json& render) {
   row.references = build.at("references");
   row.node_bytes = build.at("nodes").get<std::uint64_t>() * bytes_a_node;
   row.tree_hash = build.at("tree_hash");
+  if (build.contains("lookback") && find_device_builder(builder)) row.lookback = build["lookback"];
   return row;
 }
 
@@ -184,6 +186,7 @@ Json to_json(const std::vector<SceneComparison>& scenes) {
                       {"mrays_per_s", row.mrays_per_s},
                       {"steps_per_ray", row.steps_per_ray},
                       {"tree_hash", row.tree_hash}});
+      if (row.lookback) rows.back()["lookback"] = *row.lookback;
     }
     list.push_back({{"scene", scene.scene}, {"triangles", scene.triangles}, {"builders", rows}});
   }

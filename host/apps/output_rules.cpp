@@ -16,16 +16,17 @@ namespace fs = std::filesystem;
 
 struct Output {
   const char* option;
+  const char* said;  // in messages
   std::string Options::*file;
   const char* ending;  // what the file's name may end in; null: anything
 };
 
-constexpr Output outputs[] = {{"--output", &Options::output, ".png"},
-                              {"--json", &Options::json, nullptr},
-                              {"--trace-events", &Options::trace_events, nullptr},
-                              {"--markdown", &Options::markdown, nullptr},
-                              {"--plot", &Options::plot, ".svg"},
-                              {"--csv", &Options::csv, nullptr}};
+constexpr Output outputs[] = {{"--output", "-o (--output)", &Options::output, ".png"},
+                              {"--json", "--json", &Options::json, nullptr},
+                              {"--trace-events", "--trace-events", &Options::trace_events, nullptr},
+                              {"--markdown", "--markdown", &Options::markdown, nullptr},
+                              {"--plot", "--plot", &Options::plot, ".svg"},
+                              {"--csv", "--csv", &Options::csv, nullptr}};
 
 // What there is at the end of links, the last of which may point to nothing yet.
 fs::path without_links(fs::path path) {
@@ -64,7 +65,7 @@ std::string lower(std::string text) {
 }
 
 void check_name(const Output& output, const fs::path& path) {
-  const std::string option = output.option;
+  const std::string option = output.said;
   if (path.empty()) throw CLI::ValidationError(option + ": no file name given");
   if (path == "-") {
     throw CLI::ValidationError(option +
@@ -81,7 +82,7 @@ void check_name(const Output& output, const fs::path& path) {
 void check_is_no_scene(const Output& output, const fs::path& path, const fs::path& scene) {
   std::error_code error;
   if (!scene.has_extension() || !fs::equivalent(path, scene, error)) return;  // built-in names have none
-  throw CLI::ValidationError(std::string(output.option) + ": '" + printable(path) +
+  throw CLI::ValidationError(std::string(output.said) + ": '" + printable(path) +
                              "' is the scene, which would be overwritten");
 }
 
@@ -100,7 +101,7 @@ void check_outputs(const CLI::App& command, const Options& options) {
   for (const Output* output : used) {
     const std::string& file = options.*output->file;
     if (is_stdout(file)) {
-      throw CLI::ValidationError(std::string(output->option) + ": '" + printable(fs::path(file)) +
+      throw CLI::ValidationError(std::string(output->said) + ": '" + printable(fs::path(file)) +
                                  "' is where stdout goes; two outputs to one file");
     }
     check_is_no_scene(*output, file, options.scene);
@@ -108,7 +109,7 @@ void check_outputs(const CLI::App& command, const Options& options) {
     for (const Output* other : used) {
       if (other == output) break;
       if (!same_file(file, options.*other->file)) continue;
-      throw CLI::ValidationError(std::string(other->option) + " and " + output->option +
+      throw CLI::ValidationError(std::string(other->said) + " and " + output->said +
                                  " name one file: " + printable(fs::path(file)));
     }
   }

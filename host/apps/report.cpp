@@ -44,6 +44,7 @@ Json to_json(const BuildReport& report) {
     json["timed_ms"] = report.kernels.sum().ms;
     json["copy_gb_per_s"] = report.kernels.copy_gb_per_s;
     json["variants"] = report.variants;
+    if (!report.variants.empty()) json["lookback"] = report.lookback;
     json["device_bytes"] = report.device_bytes;
   }
   if (report.builder == "gd16-early") json["leaf_size"] = report.leaf_size;

@@ -21,6 +21,7 @@ Spread spread_of(std::vector<double> values);
 struct BuildReport {
   std::string scene, builder, device, driver;
   std::string variants;  // of stages on the device
+  bool lookback = false;
   std::uint64_t triangles = 0, inactive = 0;
   std::uint32_t radius = 0, morton_bits = 0, leaf_size = 0;
   Spread build_ms{}, wall_ms{};

@@ -12,15 +12,14 @@ std::string why_no_device() {
   } catch (const std::exception&) {
     return "no Vulkan loader, libvulkan.so.1: install the Debian package libvulkan1";
   }
-  // Each of these can keep the loader from drivers that are there.
+  std::string settings;  // each can keep the loader from drivers that are there
   for (const char* const name :
        {"VK_DRIVER_FILES", "VK_ICD_FILENAMES", "VK_LOADER_DRIVERS_SELECT", "VK_LOADER_DRIVERS_DISABLE"}) {
-    if (const char* const value = std::getenv(name); value && *value) {
-      return std::string("no Vulkan device found with ") + name + "=" + value +
-             ": unset it, or install the Debian package mesa-vulkan-drivers";
-    }
+    if (const char* const value = std::getenv(name); value && *value)
+      settings.append(settings.empty() ? " with " : " and ").append(name).append("=").append(value);
   }
-  return "no Vulkan device found: install the Debian package mesa-vulkan-drivers, which needs no GPU";
+  return "no Vulkan device found" + settings + ": " + (settings.empty() ? "" : "unset that, or ") +
+         "install the Debian package mesa-vulkan-drivers, which needs no GPU";
 }
 
 }  // namespace coppice
