@@ -204,7 +204,7 @@ TEST_F(CommandWithCache, TuneLooksAtItsFileBeforeItMeasures) {
 }
 
 TEST_F(CommandWithCache, TuneWithoutLookbackMeasuresWhatStillRuns) {
-  const Outcome tune = run("tune --lookback off --most 3000 --runs 1 --json -");
+  const Outcome tune = run("tune --lookback off --most 3000 --size 64x48 --runs 1 --json -");
   ASSERT_EQ(tune.status, 0) << tune.err;
   const auto stages = nlohmann::json::parse(tune.out)["stages"];
   ASSERT_EQ(stages.size(), 2u);
@@ -227,7 +227,7 @@ TEST_F(CommandWithCache, TuneKeepsATableThatLaterRunsRead) {
   EXPECT_EQ(variants_of_a_build("--variants sort=onesweep-match,trace=wide-single", err),
             "sort=onesweep-match,trace=wide-single");
 
-  const Outcome tune = run("tune --most 3000 --runs 1 --validate --json -");
+  const Outcome tune = run("tune --most 3000 --size 64x48 --runs 1 --validate --json -");
   ASSERT_EQ(tune.status, 0) << tune.err;
   const auto stages = nlohmann::json::parse(tune.out)["stages"];
   ASSERT_EQ(stages.size(), 2u);

@@ -132,6 +132,7 @@ void add_tune(CLI::App& command, Options& options) {
   command.add_option("--runs", options.runs, "of each variant, after a warm-up until the median is stable")
       ->check(CLI::Range(1u, 10000u))
       ->capture_default_str();
+  add_size(command, options);  // the trace is measured on a quarter of its rays
   add_lookback(command, options);
   add_device(command, options);
 }

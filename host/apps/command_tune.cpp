@@ -31,8 +31,8 @@ BenchRow sort_workload(CheckedDevice& device, const Options& options, std::strin
 // Its variants are named as trees are.
 BenchRow trace_workload(CheckedDevice& device, const Options& options, std::string_view variant) {
   Options quarter = options;  // of a picture: enough rays for any device
-  quarter.width /= 2;
-  quarter.height /= 2;
+  quarter.width = (quarter.width + 1) / 2;
+  quarter.height = (quarter.height + 1) / 2;
   return bench_primary_rays(device, quarter, std::string(variant));
 }
 
