@@ -198,5 +198,22 @@ TEST_F(Command, NoLoaderOrDriverIsOneLineThatNamesThePackage) {
   EXPECT_EQ(nlohmann::json::parse(read("d.json")), nlohmann::json::array());
 }
 
+// Runs on an old lavapipe too, see test.sh.
+TEST_F(Command, AnOldLavapipeIsSaidToBeSlowAndNoOther) {
+  const Outcome outcome = run("build one.obj --runs 1 --json -");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto report = nlohmann::json::parse(outcome.out);
+  const std::string driver = report["driver"];
+  const bool lavapipe = report["device"].get<std::string>().starts_with("llvmpipe");
+  const bool old = lavapipe && driver.starts_with("Mesa ") && std::atoi(driver.c_str() + 5) < 25;
+  EXPECT_EQ(outcome.err.find("times slower") != std::string::npos, old) << driver << ": " << outcome.err;
+  if (!old) return;
+  EXPECT_NE(outcome.err.find("./run.sh"), std::string::npos) << outcome.err;
+  EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+  const Outcome compared = run("compare one.obj --builders ploc,sah --size 8x8");  // whose rows run on it
+  EXPECT_EQ(std::ranges::count(compared.err, '\n'), 1) << compared.err;
+  EXPECT_NE(compared.err.find("./run.sh"), std::string::npos) << compared.err;
+}
+
 }  // namespace
 }  // namespace coppice
