@@ -1,5 +1,6 @@
 // What the command line measures: kernels of a build and of a picture, benches, tuned variants.
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "interface/ploc.h"
 #include "support/command.h"
@@ -139,10 +140,82 @@ std::string kept_file(const fs::path& folder, const std::string& stem) {
   return {};
 }
 
-TEST_F(Command, TuneKeepsATableThatLaterRunsRead) {
-  const char* const home = std::getenv("XDG_CACHE_HOME");
-  const std::string before = home ? home : "";
-  setenv("XDG_CACHE_HOME", folder_.c_str(), 1);
+// Commands with a cache in the folder of the test.
+class CommandWithCache : public Command {
+ protected:
+  void SetUp() override {
+    Command::SetUp();
+    if (const char* const home = std::getenv("XDG_CACHE_HOME")) before_ = home;
+    setenv("XDG_CACHE_HOME", folder_.c_str(), 1);
+  }
+  void TearDown() override {
+    before_ ? setenv("XDG_CACHE_HOME", before_->c_str(), 1) : unsetenv("XDG_CACHE_HOME");
+    Command::TearDown();
+  }
+
+  std::string table() const { return kept_file(folder_ / "coppice", "variants-"); }
+
+  // Where the table is kept, once a run has shown how this device's files are named.
+  std::string table_to_be() const {
+    EXPECT_EQ(run("build one.obj --runs 1").status, 0);
+    std::string pipelines = kept_file(folder_ / "coppice", "pipelines-");
+    return pipelines.empty() ? pipelines : pipelines.replace(pipelines.rfind("pipelines-"), 10, "variants-");
+  }
+
+ private:
+  std::optional<std::string> before_;
+};
+
+TEST_F(CommandWithCache, WhateverBearsTheNameOfAKeptFileIsNotWaitedFor) {
+  const std::string variants = table_to_be();
+  ASSERT_FALSE(variants.empty());
+  const std::string pipelines = kept_file(folder_ / "coppice", "pipelines-");
+  write("large", "");
+  fs::resize_file("large", std::uintmax_t{1} << 33);  // without any block
+  const struct {
+    const char *make, *said;
+  } cases[] = {{"mkfifo", "is no regular file"},
+               {"ln -s /dev/zero", "is no regular file"},
+               {"ln -s $PWD/large", "is larger than"},
+               {"mkdir", "is no regular file"}};
+  for (const auto& c : cases) {
+    for (const std::string& file : {variants, pipelines}) {
+      fs::remove(file);
+      ASSERT_EQ(std::system((std::string(c.make) + " '" + file + "'").c_str()), 0);
+      const Outcome outcome = run("build one.obj --runs 1");
+      EXPECT_EQ(outcome.status, 0) << c.make << ": " << outcome.err;
+      EXPECT_EQ(outcome.err.find(c.said) != std::string::npos, file == variants) << outcome.err;
+      if (file == variants && !fs::is_regular_file(file))
+        expect_refused("tune --most 1000 --runs 1", 1, "is no regular file");
+      fs::remove(file);
+    }
+  }
+}
+
+TEST_F(CommandWithCache, TuneLooksAtItsFileBeforeItMeasures) {
+  write("coppice", "no folder");
+  expect_refused("tune", 1, "coppice: cannot make the folder");
+  unsetenv("XDG_CACHE_HOME");
+  const std::optional<std::string> home =
+      std::getenv("HOME") ? std::optional<std::string>(std::getenv("HOME")) : std::nullopt;
+  unsetenv("HOME");
+  expect_refused("tune", 1, "neither XDG_CACHE_HOME nor HOME");
+  if (home) setenv("HOME", home->c_str(), 1);
+}
+
+TEST_F(CommandWithCache, TuneWithoutLookbackMeasuresWhatStillRuns) {
+  const Outcome tune = run("tune --lookback off --most 3000 --size 64x48 --runs 1 --json -");
+  ASSERT_EQ(tune.status, 0) << tune.err;
+  const auto stages = nlohmann::json::parse(tune.out)["stages"];
+  ASSERT_EQ(stages.size(), 2u);
+  for (const auto& row : stages[0]["variants"])
+    EXPECT_EQ(row["variant"].get<std::string>().find("onesweep"), std::string::npos);
+  EXPECT_EQ(stages[0]["variants"].size(), 3u);
+  EXPECT_EQ(stages[1]["variants"].size(), 3u);
+  EXPECT_FALSE(table().empty());
+}
+
+TEST_F(CommandWithCache, TuneKeepsATableThatLaterRunsRead) {
   const auto variants_of_a_build = [](const std::string& arguments, std::string& err) {
     const Outcome build = run("build terrain:500 --runs 1 --json - " + arguments);
     err = build.err;
@@ -154,14 +227,18 @@ TEST_F(Command, TuneKeepsATableThatLaterRunsRead) {
   EXPECT_EQ(variants_of_a_build("--variants sort=onesweep-match,trace=wide-single", err),
             "sort=onesweep-match,trace=wide-single");
 
-  const Outcome tune = run("tune --most 3000 --runs 1 --validate --json -");
+  const Outcome tune = run("tune --most 3000 --size 64x48 --runs 1 --validate --json -");
   ASSERT_EQ(tune.status, 0) << tune.err;
   const auto stages = nlohmann::json::parse(tune.out)["stages"];
   ASSERT_EQ(stages.size(), 2u);
   EXPECT_EQ(stages[0]["variants"].size(), 5u);
   EXPECT_EQ(stages[1]["variants"].size(), 3u);
-  const std::string table = kept_file(folder_ / "coppice", "variants-");
+  const std::string table = this->table();
   ASSERT_FALSE(table.empty());
+  for (const auto& stage : stages) {
+    EXPECT_TRUE(stage["sure"] || stage["chosen"] == stage["rule"])
+        << stage;  // what noise decided is not kept
+  }
   const std::string text = read(table), sort = "sort=" + stages[0]["chosen"].get<std::string>(),
                     trace = "trace=" + stages[1]["chosen"].get<std::string>();
   EXPECT_TRUE(text.ends_with("\n" + sort + "\n" + trace + "\n")) << text;
@@ -179,10 +256,6 @@ TEST_F(Command, TuneKeepsATableThatLaterRunsRead) {
   EXPECT_EQ(variants_of_a_build("", err), by_rule);
   EXPECT_NE(err.find("is no table of variants; ignored"), std::string::npos) << err;
   EXPECT_EQ(std::ranges::count(err, '\n'), 1) << err;
-  if (home)
-    setenv("XDG_CACHE_HOME", before.c_str(), 1);
-  else
-    unsetenv("XDG_CACHE_HOME");
 }
 
 }  // namespace

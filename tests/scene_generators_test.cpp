@@ -151,7 +151,7 @@ TEST(OpenScene, ASeedThatIsNoneIsAnError) {
               "scene 'hard:nested:5:" + seed + "': '" + seed + "' is no seed from 0 to 18446744073709551615");
   }
   EXPECT_EQ(error_of("hard:nested::5"),
-            "scene 'hard:nested::5': '' is no number of triangles from 1 to 67108864");
+            "scene 'hard:nested::5': '' is no number of triangles from 1 to 67107840");
 }
 
 TEST(OpenScene, OpensAFile) {
@@ -173,7 +173,7 @@ TEST(OpenScene, ACountThatIsNoneIsAnError) {
   for (const std::string count : {"0", "-1", "x", "", "1.5", "12x", "67108865", "99999999999"}) {
     for (const std::string name : {"scatter", "terrain", "hard:nested"}) {
       EXPECT_EQ(error_of(name + ":" + count), "scene '" + name + ":" + count + "': '" + count +
-                                                  "' is no number of triangles from 1 to 67108864");
+                                                  "' is no number of triangles from 1 to 67107840");
     }
   }
   EXPECT_NE(error_of("grove:5"), "");
@@ -189,6 +189,32 @@ TEST(OpenScene, AFileThatIsNoSceneIsAnError) {
   std::ofstream(path) << "ply\n";
   EXPECT_EQ(error_of(path.string()), path.string() + ": unknown extension '.ply', scene files end in .obj");
   std::filesystem::remove(path);
+}
+
+TEST(BuiltInSize, IsKnownBeforeTheSceneIsMade) {
+  for (const char* spec : {"scatter:1234", "terrain:777", "terrain:1", "hard:sphere:1001",
+                           "hard:needles:77:5", "hard:repeated-positions:300"}) {
+    const auto size = built_in_size(spec);
+    ASSERT_TRUE(size) << spec;
+    const Scene scene = open_scene(spec);
+    EXPECT_EQ(size->triangles, scene.indices.size()) << spec;
+    if (!std::string_view(spec).starts_with("terrain")) {
+      EXPECT_LE(scene.positions.size(), size->vertices) << spec;
+    }
+  }
+  EXPECT_EQ(built_in_size("scatter:" + std::to_string(MAX_GENERATED_TRIANGLES))->triangles,
+            MAX_GENERATED_TRIANGLES);
+  for (const char* spec : {"grove", "some.obj", "nonsense"}) EXPECT_FALSE(built_in_size(spec)) << spec;
+}
+
+TEST(BuiltInSize, CountsBeyondABuildAreRefusedBeforeAnythingIsMade) {
+  const std::string more = std::to_string(MAX_GENERATED_TRIANGLES + 1);
+  for (const std::string& spec : {"scatter:" + more, "terrain:" + more, "hard:points:" + more,
+                                  std::string("scatter:99999999999999999999"), std::string("terrain:-1"),
+                                  std::string("scatter:"), std::string("hard:points:3:x")}) {
+    EXPECT_THROW(built_in_size(spec), InputError) << spec;
+    EXPECT_THROW(open_scene(spec), InputError) << spec;
+  }
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include "apps/bench.h"
 #include "apps/frame.h"
 #include "apps/measure_build.h"
+#include "apps/scene_room.h"
 #include "builders/registry.h"
 #include "scene/scene_source.h"
 #include "stages/stages.h"
@@ -15,11 +16,13 @@ namespace {
 
 constexpr double limit_seconds = 120;
 
+std::string scatter_of(std::uint32_t count) { return "scatter:" + std::to_string(count); }
+
 // A build of scattered triangles on the device, done once and found right.
 class CheckedBuild {
  public:
   CheckedBuild(CheckedDevice& device, Options options, const NamedDeviceBuilder& builder, std::uint32_t count)
-      : arrays_(scene_arrays(open_scene("scatter:" + std::to_string(count)))),
+      : arrays_(scene_arrays(open_scene(scatter_of(count)))),
         layout_(device.device.properties().max_block_bytes),
         plan_(plan(device, options, builder)),
         executor_(device.device, layout_) {
@@ -138,6 +141,7 @@ BenchRow bench_rounds(CheckedDevice& device, const Options& options, std::uint32
 }  // namespace
 
 void bench_build(CheckedDevice& device, const Options& options, const AddRow& add) {
+  check_room(scatter_of(options.most), options, &device.device);  // before the smaller sizes take their time
   for (const NamedDeviceBuilder& builder : device_builders()) {
     const std::string name(builder.name);
     const bool chosen = options.builders.empty() || std::ranges::count(options.builders, name);
@@ -149,6 +153,7 @@ void bench_build(CheckedDevice& device, const Options& options, const AddRow& ad
 
 void bench_ploc(CheckedDevice& device, const Options& options, const AddRow& add) {
   if (!is_wanted(options, "ploc", "scatter")) return;
+  check_room(scatter_of(options.most), options, &device.device);
   for (const std::uint32_t count : bench_sizes(5000, options.most)) add(bench_rounds(device, options, count));
 }
 

@@ -6,6 +6,7 @@
 #include "apps/frame.h"
 #include "apps/measure_build.h"
 #include "apps/render_frame.h"
+#include "apps/scene_room.h"
 #include "builders/registry.h"
 #include "pipeline/ray_tracing.h"
 #include "scene/scene_source.h"
@@ -121,6 +122,7 @@ void bench_trees(CheckedDevice& device, const Options& options, const Scene& sce
 }  // namespace
 
 void bench_trace(CheckedDevice& device, const Options& options, const AddRow& add) {
+  check_room(options.scene, options, &device.device);
   const Scene scene = open_scene(options.scene, options.up);
   Options one = options;
   for (const std::string& builder :

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 
+#include "apps/driver_note.h"
 #include "pipeline/self_check.h"
 #include "pipeline/variant_table.h"
 #include "scene/input_error.h"
@@ -58,6 +59,7 @@ bool CheckedDevice::walks_wide(const Options& options, std::uint32_t triangle_co
 
 CheckedDevice open_device(const Options& options) {
   CheckedDevice checked{Device({options.device, options.validate, false, cache_folder()}), true, {}};
+  note_slow_driver(checked.device.properties());
   if (!checked.device.has_kept_pipelines() && isatty(STDERR_FILENO)) {
     std::fprintf(stderr, "note: compiling the kernels for %s, as no earlier run has left them\n",
                  checked.device.properties().name.c_str());

@@ -1,7 +1,6 @@
 #include "apps/frame.h"
 #include "apps/measure_build.h"
-#include "scene/input_error.h"
-#include "scene/scene_source.h"
+#include "apps/scene_room.h"
 
 namespace coppice {
 
@@ -26,11 +25,9 @@ BuildReport build_on_device(const Options& options, const SceneArrays& arrays, B
 }  // namespace
 
 int run_build(const Options& options) {
-  const Scene scene = open_scene(options.scene);
+  const Scene scene = open_scene_with_room(options, find_device_builder(options.builder));
   print_warnings(scene);
   const SceneArrays arrays = scene_arrays(scene);
-  if (options.wide && !find_device_builder(options.builder))
-    throw InputError("--wide converts trees that a device builds, not those of " + options.builder);
   BuildReport report = report_for(options, scene, arrays.triangles);
   int status = 0;
   Bvh bvh;

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cstdio>
+#include <optional>
+#include <set>
 
 #include "apps/child_process.h"
 #include "apps/comparison.h"
@@ -27,7 +29,7 @@ std::vector<std::string> all_builders() {
 
 // Each row is a process of its own, which can be ended when its time is over.
 ComparisonRow measure(const std::string& scene, const std::string& builder, const Options& options,
-                      Json& render) {
+                      Json& render, std::set<std::string>& notes) {
   std::vector<std::string> arguments = {"render", scene, "--builder", builder,
                                         "--json", "-",   "-o",        "/dev/null"};
   const auto add = [&](const char* flag, const std::string& value) {
@@ -43,7 +45,12 @@ ComparisonRow measure(const std::string& scene, const std::string& builder, cons
   add("--morton-bits", options.morton_bits);
   add("--variants", options.variants);
   if (!options.device.empty()) add("--device", options.device);
+  // Only what a device builds has prefix sums.
+  if (find_device_builder(builder)) add("--lookback", options.lookback);
   const ChildResult child = run_self(arguments, options.timeout_seconds);
+  for (const std::string& note : child.notes) {
+    if (notes.insert(note).second) std::fprintf(stderr, "%s\n", note.c_str());
+  }
   ComparisonRow row;
   row.builder = builder;
   if (child.timed_out) {
@@ -68,14 +75,16 @@ int run_compare(const Options& options) {
   const std::vector<std::string> builders = options.builders.empty() ? all_builders() : options.builders;
   std::vector<SceneComparison> comparison;
   std::string conditions;
+  std::set<std::string> notes;  // of the children, each said once
   {
     Progress progress("comparing", static_cast<std::uint32_t>(scenes.size() * builders.size()));
     for (const std::string& name : scenes) {
-      // Opened here too, so that a scene that cannot be read is an error and no row of X.
-      SceneComparison scene{name, open_scene(name).indices.size(), {}};
+      // Opened here too, so that a scene that cannot be read is an error and no row of X; but not made.
+      const std::optional<SceneSize> size = built_in_size(name);
+      SceneComparison scene{name, size ? size->triangles : open_scene(name).indices.size(), {}};
       for (const std::string& builder : builders) {
         Json render;
-        scene.rows.push_back(measure(name, builder, options, render));
+        scene.rows.push_back(measure(name, builder, options, render, notes));
         if (conditions.empty() && !render.is_null()) conditions = render.at("trace_device");
         progress.step();
       }

@@ -5,7 +5,10 @@
 #include <cstdio>
 
 #include "apps/bench.h"
+#include "apps/comparison_text.h"
 #include "apps/option_groups.h"
+#include "apps/option_rules.h"
+#include "scene/printable.h"
 #include "scene/write_file.h"
 
 namespace coppice {
@@ -23,7 +26,6 @@ void add_scene_and_build(CLI::App& command, Options& options, const std::vector<
   add_builder(command, options, builders);
   add_ploc(command, options);
   add_device(command, options);
-  add_trace_events(command, options);
 }
 
 void add_render(CLI::App& command, Options& options) {
@@ -35,6 +37,7 @@ void add_render(CLI::App& command, Options& options) {
   add_tree(command, options);
   add_frames(command, options);
   add_leaf_size(command, options);
+  add_trace_events(command, options);
   add_scene_and_build(command, options, builder_names());
 }
 
@@ -42,9 +45,10 @@ void add_build(CLI::App& command, Options& options) {
   command.add_option("--runs", options.runs, "after a warm-up")
       ->check(CLI::Range(1u, 10000u))
       ->capture_default_str();
-  command.add_flag("--rounds", options.rounds, "a table of the rounds of PLOC on the device");
+  command.add_flag("--rounds", options.rounds, "a table of the rounds of gpu-ploc");
   command.add_flag("--wide", options.wide, "then convert the tree to wide nodes on the device");
   add_leaf_size(command, options);
+  add_trace_events(command, options);
   add_scene_and_build(command, options, builder_names());
 }
 
@@ -99,7 +103,6 @@ void add_stability(CLI::App& command, Options& options) {
       ->capture_default_str();
   add_ploc(command, options);
   add_device(command, options);
-  add_trace_events(command, options);
 }
 
 void add_bench(CLI::App& command, Options& options) {
@@ -134,6 +137,8 @@ void add_tune(CLI::App& command, Options& options) {
   command.add_option("--runs", options.runs, "of each variant, after a warm-up until the median is stable")
       ->check(CLI::Range(1u, 10000u))
       ->capture_default_str();
+  add_size(command, options);  // the trace is measured on a quarter of its rays
+  add_lookback(command, options);
   add_device(command, options);
 }
 
@@ -160,6 +165,21 @@ constexpr Command commands[] = {
     {"devices", "the Vulkan devices", [](CLI::App&, Options&) {}, run_devices},
 };
 
+std::string command_names() {
+  std::string names;
+  for (const Command& command : commands) names.append(names.empty() ? "" : ", ").append(command.name);
+  return names;
+}
+
+// The first word is the command's name. CLI11 would call another one an argument that was not expected.
+void check_command_name(int argc, char** argv) {
+  if (argc < 2) throw CLI::RequiredError("A command (" + command_names() + "; see --help)");
+  const std::string_view name = argv[1];
+  if (name.starts_with('-') || std::ranges::find(commands, name, &Command::name) != std::end(commands))
+    return;
+  throw CLI::ValidationError("unknown command '" + printable(name) + "': there are " + command_names());
+}
+
 }  // namespace
 
 int run_command_line(int argc, char** argv) {
@@ -167,6 +187,7 @@ int run_command_line(int argc, char** argv) {
   CLI::App app("GPU-resident BVH builder and ray tracer");
   app.require_subcommand(0, 1);
   app.set_help_all_flag("--help-all", "Help of all commands");
+  app.set_version_flag("--version", "coppice " COPPICE_VERSION);
   for (const Command& command : commands) {
     CLI::App& its = *app.add_subcommand(std::string(command.name), command.summary);
     command.add_options(its, options);
@@ -174,13 +195,16 @@ int run_command_line(int argc, char** argv) {
         ->type_name("FILE");
   }
   try {
+    check_command_name(argc, argv);
     app.parse(argc, argv);
     if (app.get_subcommands().empty()) throw CLI::RequiredError("A command (see --help)");
     check_view(options);
+    check_options_matter(*app.get_subcommands().front(), options);
+    check_outputs(*app.get_subcommands().front(), options);
   } catch (const CLI::Success& help) {
     return app.exit(help);
   } catch (const CLI::ParseError& error) {
-    std::fprintf(stderr, "coppice: %s\n", error.what());
+    std::fprintf(stderr, "coppice: %s\n", one_line(error.what()).c_str());
     return 2;
   }
   for (const std::string& file :

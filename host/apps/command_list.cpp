@@ -3,6 +3,7 @@
 #include "apps/options.h"
 #include "apps/report.h"
 #include "gpu/device.h"
+#include "gpu/no_driver.h"
 #include "scene/scene_source.h"
 
 namespace coppice {
@@ -43,7 +44,7 @@ int run_devices(const Options& options) {
                     {"suitable", reason.empty()}});
   }
   write_json(options.json, rows);
-  if (devices.empty()) throw DeviceError("no Vulkan device found");
+  if (devices.empty()) throw DeviceError(why_no_device());
   return 0;
 }
 

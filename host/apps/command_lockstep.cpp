@@ -5,8 +5,8 @@
 #include "apps/frame.h"
 #include "apps/measure_build.h"
 #include "apps/report.h"
+#include "apps/scene_room.h"
 #include "pipeline/wide.h"
-#include "scene/scene_source.h"
 #include "stages/errors.h"
 #include "stages/lockstep_executor.h"
 
@@ -50,7 +50,7 @@ struct HitTolerance {
 }  // namespace
 
 int run_lockstep(const Options& options) {
-  const Scene scene = open_scene(options.scene, options.up);
+  const Scene scene = open_scene_with_room(options, true);
   print_warnings(scene);
   const SceneArrays arrays = scene_arrays(scene);
   CheckedDevice device = open_device(options);

@@ -5,9 +5,8 @@
 #include "analysis/tree_hash.h"
 #include "apps/frame.h"
 #include "apps/render_frame.h"
+#include "apps/scene_room.h"
 #include "pipeline/interruption.h"
-#include "scene/input_error.h"
-#include "scene/scene_source.h"
 #include "scene/write_file.h"
 #include "scene/write_png.h"
 
@@ -88,17 +87,16 @@ void print_render(const RenderReport& report, const Options& options, double loa
 }  // namespace
 
 int run_render(const Options& options) {
-  if (options.tracer == "cpu" && options.tree.starts_with("wide"))
-    throw InputError("--tree " + options.tree + " is for the tracer on the device, not for --tracer cpu");
   check_writable(options.output);
   const auto load_start = Clock::now();
-  const Scene scene = open_scene(options.scene, options.up);
+  const bool on_device = options.tracer == "gpu" || find_device_builder(options.builder);
+  const Scene scene = open_scene_with_room(options, on_device);
   const double load_ms = ms_since(load_start);
   print_warnings(scene);
 
   std::optional<CheckedDevice> device;
   const auto device_start = Clock::now();
-  if (options.tracer == "gpu" || find_device_builder(options.builder)) device.emplace(open_device(options));
+  if (on_device) device.emplace(open_device(options));
   const double device_ms = device ? ms_since(device_start) : 0;
   const bool split = options.kernels || !options.json.empty() || !options.trace_events.empty();
   const RenderReport report = options.tracer == "gpu"

@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdarg>
+#include <cstdio>
 #include <limits>
+
+#include "apps/comparison_text.h"
+#include "pipeline/build.h"
 
 namespace coppice {
 
@@ -12,10 +16,12 @@ namespace {
 std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
 
 std::string format(const char* pattern, ...) {
-  char text[512];
-  va_list arguments;
+  va_list arguments, again;
   va_start(arguments, pattern);
-  std::vsnprintf(text, sizeof text, pattern, arguments);
+  va_copy(again, arguments);
+  std::string text(static_cast<std::size_t>(std::vsnprintf(nullptr, 0, pattern, arguments)), '\0');
+  std::vsnprintf(text.data(), text.size() + 1, pattern, again);
+  va_end(again);
   va_end(arguments);
   return text;
 }
@@ -128,15 +134,16 @@ ComparisonRow comparison_row(const std::string& builder, const Json& render) {
   row.references = build.at("references");
   row.node_bytes = build.at("nodes").get<std::uint64_t>() * bytes_a_node;
   row.tree_hash = build.at("tree_hash");
+  if (build.contains("lookback") && find_device_builder(builder)) row.lookback = build["lookback"];
   return row;
 }
 
 std::string to_markdown(const std::vector<SceneComparison>& scenes, const std::string& conditions) {
-  std::string text = conditions + "\n";
+  std::string text = markdown_text(conditions) + "\n";
   for (const SceneComparison& scene : scenes) {
     const double fastest = least(scene.rows, &ComparisonRow::build_ms);
     const double best = least(scene.rows, &ComparisonRow::frame_ms);
-    text += format("\n### %s, %llu triangles\n\n", scene.scene.c_str(),
+    text += format("\n### %s, %llu triangles\n\n", markdown_text(scene.scene).c_str(),
                    static_cast<unsigned long long>(scene.triangles));
     text +=
         "| builder | build ms | x fastest | frame ms | FPS | x best | SAH cost | depth | references | nodes "
@@ -144,8 +151,8 @@ std::string to_markdown(const std::vector<SceneComparison>& scenes, const std::s
     text += "|---|---|---|---|---|---|---|---|---|---|---|---|\n";
     for (const ComparisonRow& row : scene.rows) {
       if (!row.infeasible.empty()) {
-        text +=
-            format("| %s | X (%s) | | X | X | | | | | | | |\n", row.builder.c_str(), row.infeasible.c_str());
+        text += format("| %s | X (%s) | | X | X | | | | | | | |\n", row.builder.c_str(),
+                       markdown_text(row.infeasible).c_str());
         continue;
       }
       text +=
@@ -179,6 +186,7 @@ Json to_json(const std::vector<SceneComparison>& scenes) {
                       {"mrays_per_s", row.mrays_per_s},
                       {"steps_per_ray", row.steps_per_ray},
                       {"tree_hash", row.tree_hash}});
+      if (row.lookback) rows.back()["lookback"] = *row.lookback;
     }
     list.push_back({{"scene", scene.scene}, {"triangles", scene.triangles}, {"builders", rows}});
   }
@@ -215,7 +223,7 @@ std::string to_svg(const std::vector<SceneComparison>& scenes) {
   for (const SceneComparison& scene : scenes) {
     const char* const colour = colours[index % std::size(colours)];
     svg += format("<text x='%g' y='%g' fill='%s'>%s</text>\n", plot_margin + 10,
-                  plot_margin - 34 + 13 * static_cast<double>(index), colour, scene.scene.c_str());
+                  plot_margin - 34 + 13 * static_cast<double>(index), colour, xml_text(scene.scene).c_str());
     ++index;
     for (const ComparisonRow& row : scene.rows) {
       if (!has_point(row)) continue;

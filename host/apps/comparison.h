@@ -15,6 +15,7 @@ struct ComparisonRow {
   double build_ms = 0, frame_ms = 0, sah = 0, mrays_per_s = 0, steps_per_ray = 0;
   std::uint64_t depth = 0, references = 0, node_bytes = 0;
   std::string tree_hash;
+  std::optional<bool> lookback;  // of what a device built
 };
 
 struct SceneComparison {

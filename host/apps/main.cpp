@@ -2,7 +2,12 @@
 #include <malloc.h>
 #endif
 
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <limits>
 #include <new>
@@ -10,7 +15,30 @@
 #include "apps/command_line.h"
 #include "pipeline/interruption.h"
 
+namespace {
+
+// A standard stream that the caller closed would be the first file that the program opens. What is written to
+// these stand-ins fails as it would on a closed stream.
+void hold_closed_streams() {
+  for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream) {
+    if (fcntl(stream, F_GETFD) < 0 && errno == EBADF) open("/dev/null", O_RDONLY);
+  }
+}
+
+// What was printed may still lie in the buffer, or have failed unseen: a full disk, say, where stdout goes.
+int status_after_output(int status) {
+  errno = 0;
+  const bool written = std::fflush(stdout) == 0 && !std::ferror(stdout);
+  if (written || status != 0) return status;
+  std::fprintf(stderr, "coppice: cannot write to stdout%s%s\n", errno ? ": " : "",
+               errno ? std::strerror(errno) : "");
+  return 1;
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
+  hold_closed_streams();
   // Memory that one build gives back serves the next: fetching it from the kernel anew, page by page, takes
   // up to half of a build of a million triangles.
 #ifdef M_MMAP_MAX
@@ -18,7 +46,7 @@ int main(int argc, char** argv) {
   mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
 #endif
   try {
-    return coppice::run_command_line(argc, argv);
+    return status_after_output(coppice::run_command_line(argc, argv));
   } catch (const coppice::Interrupted& interrupted) {
     std::fprintf(stderr, "coppice: interrupted\n");
     return 128 + interrupted.signal;  // as shells say it

@@ -126,6 +126,7 @@ BuildReport measure_gpu_build(CheckedDevice& device, GpuExecutor& executor, cons
   report.device = device.device.properties().name;
   report.driver = device.device.properties().driver;
   report.variants = to_string(plan.options.variants);
+  report.lookback = plan.options.lookback;
   report.wall_ms = spread_of(wall_ms);
   report.runs = options.runs;
   const RunCounts counts = counts_of_build(executor, plan, wide);

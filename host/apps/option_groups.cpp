@@ -100,8 +100,17 @@ void add_leaf_size(CLI::App& command, Options& options) {
       ->capture_default_str();
 }
 
+void add_lookback(CLI::App& command, Options& options) {
+  command
+      .add_option("--lookback", options.lookback,
+                  "prefix sums by decoupled lookback; auto: where the self-check allows it")
+      ->check(CLI::IsMember({"auto", "on", "off"}))
+      ->capture_default_str();
+}
+
 void add_ploc(CLI::App& command, Options& options) {
-  command.add_option("--radius", options.radius, "search radius of PLOC")
+  command
+      .add_option("--radius", options.radius, "search radius of PLOC and H-PLOC; other builders have none")
       ->check(CLI::Range(1u, PLOC_MAX_RADIUS))
       ->capture_default_str();
   command
@@ -109,11 +118,7 @@ void add_ploc(CLI::App& command, Options& options) {
                   "of the codes PLOC and LBVH sort by; auto: 60 where 30 leave cells crowded")
       ->check(CLI::IsMember({"auto", "30", "60"}))
       ->capture_default_str();
-  command
-      .add_option("--lookback", options.lookback,
-                  "prefix sums by decoupled lookback; auto: where the self-check allows it")
-      ->check(CLI::IsMember({"auto", "on", "off"}))
-      ->capture_default_str();
+  add_lookback(command, options);
   command
       .add_option(
           "--variants", options.variants,

@@ -16,6 +16,7 @@ std::vector<std::string> device_builder_names();
 void add_scene(CLI::App& command, Options& options);
 void add_builder(CLI::App& command, Options& options, const std::vector<std::string>& names);
 void add_leaf_size(CLI::App& command, Options& options);
+void add_lookback(CLI::App& command, Options& options);
 void add_ploc(CLI::App& command,
               Options& options);  // and what else decides how a tree is built on the device
 void add_tree(CLI::App& command, Options& options);

@@ -151,6 +151,8 @@ void describe_build(const CheckedDevice& device, const GpuExecutor& executor, co
                     BuildReport& report) {
   report.device = device.device.properties().name;
   report.driver = device.device.properties().driver;
+  report.variants = to_string(build.options.variants);
+  report.lookback = build.options.lookback;
   report.rounds = executor.read(build.state)[0].round_count;
   report.rounds_bound = build.rounds_bound;
   describe_tree(report, read_tree(executor, build));

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <iostream>
 
 #include "analysis/tree_hash.h"
-#include "scene/input_error.h"
 #include "scene/write_file.h"
 
 namespace coppice {
@@ -18,6 +16,14 @@ Spread spread_of(std::vector<double> values) {
 }
 
 Json coordinates(glm::dvec3 point) { return {point.x, point.y, point.z}; }
+namespace {
+
+// Names of files and devices need not be UTF-8, JSON must be: what is none becomes U+FFFD.
+std::string text_of(const Json& json, int indent) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
 
 Json to_json(const BuildReport& report) {
   Json json = {{"scene", report.scene},
@@ -39,6 +45,7 @@ Json to_json(const BuildReport& report) {
     json["dispatches"] = report.kernels.untimed ? Json(nullptr) : Json(report.kernels.sum().dispatches);
     sums_to_json(report.kernels, json);
     json["variants"] = report.variants;
+    if (!report.variants.empty()) json["lookback"] = report.lookback;
     json["device_bytes"] = report.device_bytes;
   }
   if (report.builder == "gd16-early") json["leaf_size"] = report.leaf_size;
@@ -88,11 +95,11 @@ void print_build(const BuildReport& report) {
 
 void write_json(const std::string& path, const Json& json) {
   if (path.empty()) return;
+  const std::string text = text_of(json, 2) + "\n";
   if (path == "-") {
-    std::cout << json.dump(2) << std::endl;
-    if (!std::cout) throw InputError("cannot write the report to stdout");
+    std::fputs(text.c_str(), stdout);  // main says it if that fails
   } else {
-    write_file(path, json.dump(2) + "\n");
+    write_file(path, text);
   }
 }
 

@@ -22,6 +22,7 @@ Spread spread_of(std::vector<double> values);
 struct BuildReport {
   std::string scene, builder, device, driver;
   std::string variants;  // of stages on the device
+  bool lookback = false;
   std::uint64_t triangles = 0, inactive = 0;
   glm::dvec3 offset{0.0};  // that the reader subtracted from all coordinates of the file
   std::uint32_t radius = 0, morton_bits = 0, leaf_size = 0;
@@ -41,7 +42,8 @@ Json to_json(const BuildReport& report);
 Json coordinates(glm::dvec3 point);
 void print_build(const BuildReport& report);
 
-// Writes to the file, or to stdout for "-"; nothing for "". Throws InputError naming the file.
+// Writes to the file, or to stdout for "-"; nothing for "". Bytes of names that are no UTF-8 become U+FFFD.
+// Throws InputError naming the file.
 void write_json(const std::string& path, const Json& json);
 
 // Chrome trace events of timed runs, one behind the other.

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "gpu/no_driver.h"
 #include "gpu/pipeline_store.h"
 #include "gpu/vulkan_context.h"
 
@@ -117,7 +118,7 @@ DeviceListing listing_of(const vk::raii::PhysicalDevice& physical, std::uint32_t
 }
 
 std::uint32_t choose_device(const std::vector<DeviceListing>& devices, const std::string& select) {
-  if (devices.empty()) throw DeviceError("no Vulkan device found");
+  if (devices.empty()) throw DeviceError(why_no_device());
   std::uint32_t index = 0;
   const auto [end, error] = std::from_chars(select.data(), select.data() + select.size(), index);
   const bool is_index = !select.empty() && error == std::errc() && end == select.data() + select.size();
@@ -162,6 +163,13 @@ DeviceProperties describe(const VulkanContext& context, std::uint32_t timestamp_
   properties.max_block_bytes =
       std::min<std::uint64_t>(chain.get<vk::PhysicalDeviceVulkan11Properties>().maxMemoryAllocationSize,
                               chain.get<vk::PhysicalDeviceVulkan13Properties>().maxBufferSize);
+  properties.memory_bytes = 0;
+  const auto memory = context.physical.getMemoryProperties();
+  for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i) {
+    const vk::MemoryHeap& heap = memory.memoryHeaps[i];
+    if (heap.flags & vk::MemoryHeapFlagBits::eDeviceLocal)
+      properties.memory_bytes = std::max<std::uint64_t>(properties.memory_bytes, heap.size);
+  }
   properties.timestamp_period_ns = timestamp_bits ? core.limits.timestampPeriod : 0.0;
   properties.shared_memory = !context.like_a_gpu && (properties.type == DeviceType::cpu ||
                                                      properties.type == DeviceType::integrated);
@@ -223,11 +231,22 @@ std::vector<DeviceListing> list_devices() {
   return devices;
 }
 
-Device::Device(const DeviceOptions& options) {
+namespace {
+
+std::unique_ptr<VulkanContext> make_context() {
   try {
-    context_ = std::make_unique<VulkanContext>();
-    VulkanContext& context = *context_;
-    context.like_a_gpu = options.like_a_gpu;
+    return std::make_unique<VulkanContext>();
+  } catch (const std::runtime_error&) {  // no loader
+    throw DeviceError(why_no_device());
+  }
+}
+
+}  // namespace
+
+Device::Device(const DeviceOptions& options) : context_(make_context()) {
+  VulkanContext& context = *context_;
+  context.like_a_gpu = options.like_a_gpu;
+  try {
     const char* const no_timestamps = std::getenv("COPPICE_NO_TIMESTAMPS");
     context.timestamps = options.timestamps && !(no_timestamps && *no_timestamps);
     context.instance = make_instance(context.loader, options.validate);
@@ -251,8 +270,9 @@ Device::Device(const DeviceOptions& options) {
     load_pipelines(context, options.pipeline_folder);
   } catch (const DeviceError&) {
     throw;
+  } catch (const vk::IncompatibleDriverError&) {
+    throw DeviceError(why_no_device());
   } catch (const std::runtime_error& error) {
-    // vk::SystemError, or, without a loader, whatever vk::raii::Context throws.
     throw DeviceError(std::string("Vulkan: ") + error.what());
   }
 }

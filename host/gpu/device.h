@@ -49,6 +49,7 @@ struct DeviceProperties {
   std::uint32_t subgroup_size;
   bool has_subgroup_sizes;        // to choose from, for each kernel
   std::uint64_t max_block_bytes;  // largest single allocation
+  std::uint64_t memory_bytes;     // of its own memory in all: the largest of its heaps
   double timestamp_period_ns;     // 0: no timestamps
   bool shared_memory;             // the host maps the device's memory
   bool lanes_in_step;             // the invocations of a subgroup are the lanes of one vector

@@ -5,6 +5,8 @@
 #include <cstring>
 #include <fstream>
 
+#include "gpu/kept_file.h"
+
 namespace coppice {
 
 namespace {
@@ -50,18 +52,16 @@ bool is_of_this_driver(const std::vector<std::uint8_t>& blob, const vk::Physical
          std::memcmp(header.pipelineCacheUUID, device.pipelineCacheUUID.data(), VK_UUID_SIZE) == 0;
 }
 
+// Far above what drivers keep of some dozens of kernels.
+constexpr std::uint64_t most_kept_bytes = std::uint64_t{256} << 20;
+
 // Empty for none.
 std::vector<std::uint8_t> read_blob(const fs::path& path, const vk::PhysicalDeviceProperties& device) {
-  std::error_code error;
-  const std::uintmax_t size = fs::file_size(path, error);
-  FileHeader header;
-  if (error || size < sizeof header) return {};
-  std::ifstream file(path, std::ios::binary);
-  std::vector<std::uint8_t> blob(size - sizeof header);
-  file.read(reinterpret_cast<char*>(&header), sizeof header);
-  file.read(reinterpret_cast<char*>(blob.data()), static_cast<std::streamsize>(blob.size()));
+  const std::string bytes = read_kept_file(path, most_kept_bytes).bytes;
+  if (bytes.size() < sizeof(FileHeader)) return {};
+  const std::vector<std::uint8_t> blob(bytes.begin() + sizeof(FileHeader), bytes.end());
   const FileHeader expected = header_of(blob);
-  const bool whole = file && std::memcmp(&header, &expected, sizeof header) == 0;
+  const bool whole = std::memcmp(bytes.data(), &expected, sizeof expected) == 0;
   return whole && is_of_this_driver(blob, device) ? blob : std::vector<std::uint8_t>();
 }
 

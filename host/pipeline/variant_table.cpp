@@ -1,14 +1,16 @@
 #include "pipeline/variant_table.h"
 
 #include <cstdio>
-#include <fstream>
 #include <sstream>
 #include <vector>
+
+#include "gpu/kept_file.h"
 
 namespace coppice {
 
 namespace {
 
+constexpr std::uint64_t most_table_bytes = std::uint64_t{64} << 10;
 constexpr const char* format_line = "coppice variants 1";
 
 // A name in one line of its own.
@@ -51,11 +53,11 @@ std::string parse_variant_table(const std::string& text, const DeviceProperties&
 Variants variants_of(const Device& device) {
   Variants variants = default_variants(device.properties());
   const std::filesystem::path path = device.kept_file("variants");
-  std::ifstream file(path, std::ios::binary);
-  if (path.empty() || !file) return variants;
-  std::stringstream text;
-  text << file.rdbuf();
-  const std::string error = parse_variant_table(text.str(), device.properties(), variants);
+  if (path.empty()) return variants;
+  const KeptFile kept = read_kept_file(path, most_table_bytes);
+  if (!kept.found) return variants;
+  const std::string error =
+      kept.refused.empty() ? parse_variant_table(kept.bytes, device.properties(), variants) : kept.refused;
   if (!error.empty()) {
     std::fprintf(stderr, "note: %s %s; ignored (coppice tune writes it anew)\n", path.c_str(), error.c_str());
   }

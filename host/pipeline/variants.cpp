@@ -16,6 +16,10 @@ std::uint32_t sort_rule(const DeviceProperties& device) {
   return device.subgroup_size >= 16 ? SORT_ONESWEEP_MATCH : SORT_ONESWEEP_RUNS;
 }
 
+std::uint32_t sort_without_lookback(std::uint32_t value) {
+  return value == SORT_ONESWEEP_RUNS || value == SORT_ONESWEEP_MATCH ? std::uint32_t{SORT_SCAN} : value;
+}
+
 // In the order of TraceVariant.
 constexpr std::string_view trace_values[] = {"binary", "wide-packets", "wide-single"};
 
@@ -27,8 +31,11 @@ std::uint32_t trace_rule(const DeviceProperties& device) {
   return device.subgroup_size >= 32 ? TRACE_WIDE_SINGLE : TRACE_BINARY;
 }
 
-constexpr VariantStage stages[] = {{"sort", sort_values, &Variants::sort, sort_rule},
-                                   {"trace", trace_values, &Variants::trace, trace_rule}};
+std::uint32_t trace_without_lookback(std::uint32_t value) { return value; }
+
+constexpr VariantStage stages[] = {
+    {"sort", sort_values, &Variants::sort, sort_rule, sort_without_lookback},
+    {"trace", trace_values, &Variants::trace, trace_rule, trace_without_lookback}};
 
 std::string set_variant(std::string_view text, Variants& variants) {
   const std::size_t equals = text.find('=');

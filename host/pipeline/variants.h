@@ -39,6 +39,8 @@ struct VariantStage {
   std::span<const std::string_view> values;  // in the order of the numbers
   std::uint32_t Variants::*value;
   std::uint32_t (*rule)(const DeviceProperties&);  // without a table of measurements
+  // What runs in place of a variant where there is no lookback: itself, if it needs none.
+  std::uint32_t (*without_lookback)(std::uint32_t value);
 };
 
 std::span<const VariantStage> variant_stages();

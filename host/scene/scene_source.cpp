@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string_view>
 
@@ -55,7 +56,13 @@ std::uint64_t parse_seed(const std::string& spec, std::optional<std::string_view
   return seed;
 }
 
-Scene open_hard_case(const std::string& spec) {
+// A scene that a number of triangles is given for, read but not yet made.
+struct BuiltIn {
+  SceneSize size;
+  std::function<Scene()> make;
+};
+
+BuiltIn find_hard(const std::string& spec) {
   const auto [name, numbers] = split(std::string_view(spec).substr(5));
   const HardCase* const hard_case = find_hard_case(name);
   if (!hard_case) {
@@ -63,16 +70,34 @@ Scene open_hard_case(const std::string& spec) {
     for (const HardCase& other : hard_cases()) known.append(known.empty() ? "" : ", ").append(other.name);
     throw InputError("unknown hard case '" + printable(name) + "': there are " + known);
   }
-  std::optional<std::string_view> count, seed;
+  std::optional<std::string_view> count, seed_text;
   if (numbers) {
     const NameAndRest parts = split(*numbers);
     count = parts.name;
-    seed = parts.rest;
+    seed_text = parts.rest;
   }
-  const std::uint32_t triangle_count = parse_count(spec, count, hard_case->default_triangle_count);
-  Scene scene = hard_case->make(triangle_count, parse_seed(spec, seed));
-  scene.name = spec;
-  return scene;
+  const std::uint32_t asked = parse_count(spec, count, hard_case->default_triangle_count);
+  const std::uint64_t seed = parse_seed(spec, seed_text);
+  const std::uint64_t triangles = hard_case->triangle_count(asked);
+  return {{triangles, 3 * triangles}, [=] {
+            Scene scene = hard_case->make(asked, seed);
+            scene.name = spec;
+            return scene;
+          }};
+}
+
+std::optional<BuiltIn> find_built_in(const std::string& spec) {
+  if (spec.starts_with("hard:")) return find_hard(spec);
+  const auto [name, text] = split(spec);
+  if (name == "scatter") {
+    const std::uint32_t count = parse_count(spec, text, SCATTER_DEFAULT);
+    return BuiltIn{{count, std::uint64_t{3} * count}, [=] { return make_scatter(count); }};
+  }
+  if (name == "terrain") {
+    const std::uint32_t count = parse_count(spec, text, TERRAIN_DEFAULT);
+    return BuiltIn{{count, count / 2 + 1}, [=] { return make_terrain(count); }};
+  }
+  return std::nullopt;
 }
 
 Scene open_file(const std::string& spec) {
@@ -98,14 +123,12 @@ Scene open_file(const std::string& spec) {
 }
 
 Scene open_unscaled(const std::string& spec) {
-  if (spec.starts_with("hard:")) return open_hard_case(spec);
+  if (const auto built_in = find_built_in(spec)) return built_in->make();
   const auto [name, count] = split(spec);
   if (name == "grove") {
     if (count) throw InputError("scene 'grove' has one size, it takes no number of triangles");
     return make_grove();
   }
-  if (name == "scatter") return make_scatter(parse_count(spec, count, SCATTER_DEFAULT));
-  if (name == "terrain") return make_terrain(parse_count(spec, count, TERRAIN_DEFAULT));
   return open_file(spec);
 }
 
@@ -126,6 +149,11 @@ std::vector<SceneListing> list_hard_scenes() {
                         hard_case.triangle_count(hard_case.default_triangle_count), true});
   }
   return listings;
+}
+
+std::optional<SceneSize> built_in_size(const std::string& spec) {
+  const auto built_in = find_built_in(spec);
+  return built_in ? std::optional(built_in->size) : std::nullopt;
 }
 
 Scene open_scene(const std::string& spec, std::string_view up) {

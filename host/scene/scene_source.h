@@ -1,16 +1,18 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "interface/ploc.h"
 #include "scene/scene.h"
 
 namespace coppice {
 
-// The largest N that a generated scene may be asked for.
-inline constexpr std::uint32_t MAX_GENERATED_TRIANGLES = 1u << 26;
+// The largest N that a generated scene may be asked for: what a build on the device takes (max_triangles).
+inline constexpr std::uint32_t MAX_GENERATED_TRIANGLES = 65535u * PLOC_MERGE_TILE;
 
 // A scene that open_scene knows by name.
 struct SceneListing {
@@ -27,6 +29,15 @@ std::vector<SceneListing> list_scenes();
 
 // The hard cases; ":N:SEED" may follow their names too.
 std::vector<SceneListing> list_hard_scenes();
+
+// What a built-in scene will hold, known before it is made.
+struct SceneSize {
+  std::uint64_t triangles, vertices;  // a hard case may have fewer vertices
+};
+
+// The size of a built-in scene that takes a number of triangles; none for "grove", and for a file. Throws
+// InputError where open_scene would, but for what is only found in files.
+std::optional<SceneSize> built_in_size(const std::string& spec);
 
 // Opens what the user named: the path of an .obj file, "grove", "scatter[:N]", "terrain[:N]" or
 // "hard:CASE[:N[:SEED]]", with SEED a decimal number below 2^64, 1 if not given. A built-in name wins over a

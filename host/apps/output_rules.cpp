@@ -1,0 +1,118 @@
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <vector>
+
+#include "apps/option_rules.h"
+#include "scene/printable.h"
+
+namespace coppice {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Output {
+  const char* option;
+  const char* said;  // in messages
+  std::string Options::*file;
+  const char* ending;  // what the file's name may end in; null: anything
+};
+
+constexpr Output outputs[] = {{"--output", "-o (--output)", &Options::output, ".png"},
+                              {"--json", "--json", &Options::json, nullptr},
+                              {"--trace-events", "--trace-events", &Options::trace_events, nullptr},
+                              {"--markdown", "--markdown", &Options::markdown, nullptr},
+                              {"--plot", "--plot", &Options::plot, ".svg"},
+                              {"--csv", "--csv", &Options::csv, nullptr}};
+
+// What there is at the end of links, the last of which may point to nothing yet.
+fs::path without_links(fs::path path) {
+  std::error_code error;
+  for (int links = 0; links < 40 && fs::is_symlink(fs::symlink_status(path, error)); ++links) {
+    path = path.parent_path() / fs::read_symlink(path, error);
+  }
+  const fs::path whole = fs::weakly_canonical(fs::absolute(path, error), error);
+  return error ? path : whole;
+}
+
+bool is_device(const fs::path& path) {
+  std::error_code error;
+  return fs::is_character_file(fs::status(path, error));
+}
+
+// Two names of one file. What is written to devices such as /dev/null is not kept, and may go there twice.
+bool same_file(const fs::path& a, const fs::path& b) {
+  if (is_device(a)) return false;
+  std::error_code error;
+  return fs::equivalent(a, b, error) || without_links(a) == without_links(b);
+}
+
+// The file or the pipe that stdout is.
+bool is_stdout(const fs::path& path) {
+  struct stat file, standard;
+  return stat(path.c_str(), &file) == 0 && fstat(STDOUT_FILENO, &standard) == 0 && !S_ISCHR(file.st_mode) &&
+         file.st_dev == standard.st_dev && file.st_ino == standard.st_ino;
+}
+
+std::string lower(std::string text) {
+  for (char& c : text) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return text;
+}
+
+void check_name(const Output& output, const fs::path& path) {
+  const std::string option = output.said;
+  if (path.empty()) throw CLI::ValidationError(option + ": no file name given");
+  if (path == "-") {
+    throw CLI::ValidationError(option +
+                               ": '-' is no file; only --json writes to stdout (./- is a file of that name)");
+  }
+  if (!output.ending || !path.has_extension() || lower(path.extension()) == output.ending) return;
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (fs::exists(status) && !fs::is_regular_file(status)) return;  // a device or a pipe has whatever name
+  throw CLI::ValidationError(option + ": '" + printable(path) + "' does not end in " + output.ending +
+                             ", and no other format is written");
+}
+
+void check_is_no_scene(const Output& output, const fs::path& path, const fs::path& scene) {
+  std::error_code error;
+  if (!scene.has_extension() || !fs::equivalent(path, scene, error)) return;  // built-in names have none
+  throw CLI::ValidationError(std::string(output.said) + ": '" + printable(path) +
+                             "' is the scene, which would be overwritten");
+}
+
+}  // namespace
+
+void check_outputs(const CLI::App& command, const Options& options) {
+  std::vector<const Output*> used;
+  for (const Output& output : outputs) {
+    const CLI::Option* const option = command.get_option_no_throw(output.option);
+    const std::string& file = options.*output.file;
+    if (!option || (option->count() == 0 && file.empty())) continue;
+    if (output.file == &Options::json && file == "-") continue;
+    check_name(output, file);
+    used.push_back(&output);
+  }
+  for (const Output* output : used) {
+    const std::string& file = options.*output->file;
+    if (is_stdout(file)) {
+      throw CLI::ValidationError(std::string(output->said) + ": '" + printable(fs::path(file)) +
+                                 "' is where stdout goes; two outputs to one file");
+    }
+    check_is_no_scene(*output, file, options.scene);
+    for (const std::string& scene : options.scenes) check_is_no_scene(*output, file, scene);
+    for (const Output* other : used) {
+      if (other == output) break;
+      if (!same_file(file, options.*other->file)) continue;
+      throw CLI::ValidationError(std::string(other->said) + " and " + output->said +
+                                 " name one file: " + printable(fs::path(file)));
+    }
+  }
+}
+
+}  // namespace coppice

@@ -1,0 +1,25 @@
+#include "gpu/no_driver.h"
+
+#include <cstdlib>
+
+#include "gpu/vulkan_context.h"
+
+namespace coppice {
+
+std::string why_no_device() {
+  try {
+    const vk::raii::Context loader;
+  } catch (const std::exception&) {
+    return "no Vulkan loader, libvulkan.so.1: install the Debian package libvulkan1";
+  }
+  std::string settings;  // each can keep the loader from drivers that are there
+  for (const char* const name :
+       {"VK_DRIVER_FILES", "VK_ICD_FILENAMES", "VK_LOADER_DRIVERS_SELECT", "VK_LOADER_DRIVERS_DISABLE"}) {
+    if (const char* const value = std::getenv(name); value && *value)
+      settings.append(settings.empty() ? " with " : " and ").append(name).append("=").append(value);
+  }
+  return "no Vulkan device found" + settings + ": " + (settings.empty() ? "" : "unset that, or ") +
+         "install the Debian package mesa-vulkan-drivers, which needs no GPU";
+}
+
+}  // namespace coppice
