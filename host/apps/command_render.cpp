@@ -41,6 +41,8 @@ Json to_json(const RenderReport& report, const Scene& scene, const Options& opti
                {"width", options.width},
                {"height", options.height},
                {"spp", options.samples},
+               {"offset", coordinates(scene.offset)},
+               {"camera", camera_of(scene, options)},
                {"tracer", options.tracer},
                {"trace_device", report.trace_device},
                {"tree", report.walks_wide ? "wide" : "binary"},
