@@ -113,8 +113,7 @@ TEST_F(LoadObj, PolygonsThatCrossThemselvesAreCountedInAWarning) {
   const Scene scene = load(square + "f 1 3 2 4\nf 1 2 3 4\nf 1 2 4 3\n");
   EXPECT_EQ(scene.indices.size(), 6u);
   ASSERT_EQ(scene.warnings.size(), 1u);
-  EXPECT_NE(scene.warnings[0].find("edges that cross"), std::string::npos)
-      << scene.warnings[0];
+  EXPECT_NE(scene.warnings[0].find("edges that cross"), std::string::npos) << scene.warnings[0];
 }
 
 TEST_F(LoadObj, NoFacesGiveAnEmptySceneAndAWarning) {
