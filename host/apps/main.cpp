@@ -8,6 +8,7 @@
 #include <new>
 
 #include "apps/command_line.h"
+#include "apps/progress.h"
 
 int main(int argc, char** argv) {
   // Memory that one build gives back serves the next: fetching it from the kernel anew, page by page, takes
@@ -17,6 +18,7 @@ int main(int argc, char** argv) {
   mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
 #endif
   try {
+    coppice::show_loading();
     return coppice::run_command_line(argc, argv);
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "coppice: out of memory\n");
