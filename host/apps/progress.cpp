@@ -34,7 +34,7 @@ void Progress::draw() const {
 }
 
 void show_loading() {
-  constexpr std::uint32_t steps = 50;
+  static constexpr std::uint32_t steps = 50;
   struct Loading {
     std::mutex mutex;
     std::unique_ptr<Progress> bar;
