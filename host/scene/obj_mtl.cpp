@@ -89,11 +89,8 @@ class MaterialText {
       return;
     }
     text_ += keyword;
-    if (keyword.starts_with("map_")) {
-      // The name of a file may hold anything.
-      text_.append(" ").append(rest).append("\n");
-      return;
-    }
+    // The name of a file may hold anything, blanks too.
+    if (keyword.starts_with("map_")) return append_line(rest);
     append(words);
   }
 
@@ -129,6 +126,17 @@ class MaterialText {
     append(words);
     is_xyz_[keyword] = is_xyz;
     if (keyword == "Kd") has_diffuse_ = true;
+  }
+
+  void append_line(std::string_view line) {
+    Words words(line);
+    std::size_t end = 0;
+    for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
+      const auto begin = static_cast<std::size_t>(word.data() - line.data());
+      text_.append(end == 0 ? " " : line.substr(end, begin - end)).append(shorten_exponent(word));
+      end = begin + word.size();
+    }
+    text_ += '\n';
   }
 
   void append(const std::vector<std::string_view>& words) {
