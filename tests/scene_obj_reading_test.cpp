@@ -89,8 +89,8 @@ TEST(ObjReading, WhatIsPlainIsReadByTheFastReader) {
       "v -1.5e-3 2 3 1\r\nvt 0 1\nvn 0 0 1\n\n g a b\ns off\no x\ng\nusemtl red\nmtllib m.mtl\n"
       "f 1 2 3\nf 1/1 2/1 3/1 4/1\nf -1//1 -2//1 -3//1 # c\nf 1/1/1 2/1/1 3/1/1\n";
   ASSERT_TRUE(read_plain_obj_part(text, glm::dvec3{0}));
-  for (const std::string odd :
-       {"f 1 2\n", "v 1 2\n", "v 1 2 nan\n", "f 1 2 0\n", "f 1 2 x\n", "l 1 2\n", "v 1 2 3 \\\n"}) {
+  for (const std::string odd : {"f 1 2\n", "v 1 2\n", "v 1 2 nan\n", "f 1 2 0\n", "f 1 2 x\n", "f 1 2 3-1\n",
+                                "f 1 2/1/1/1 3\n", "l 1 2\n", "v 1 2 3 \\\n"}) {
     EXPECT_FALSE(read_plain_obj_part(text + odd, glm::dvec3{0})) << odd;
   }
 }

@@ -128,7 +128,9 @@ class PlainReader {
     if (index == 0) return false;
     if (is_negative) index = -index;
     int slashes = 0;
-    for (; at_ != end_ && (is_digit(*at_) || *at_ == '/' || *at_ == '-'); ++at_) slashes += *at_ == '/';
+    if (at_ != end_ && *at_ == '/') {
+      for (; at_ != end_ && (is_digit(*at_) || *at_ == '/' || *at_ == '-'); ++at_) slashes += *at_ == '/';
+    }
     if (slashes > 2 || !(at_line_end() || is_blank(*at_))) return false;
     part_.note_index(index, part_.line_count);
     part_.add_corner(index, part_.positions.size());
