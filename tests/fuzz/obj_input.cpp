@@ -100,16 +100,19 @@ std::string complaint_about_obj(std::string_view input) {
     if (!message.empty() && (!is_one_line(message) || !message.starts_with("fuzz.obj:"))) {
       return "message '" + message + "'";
     }
-    // Readers must agree: the fast one, the parser of record, and both in the smallest parts.
-    for (const bool plain : {false, true}) {
-      for (const std::size_t part_bytes : {std::size_t{1}, std::size_t{40}, std::size_t{1} << 20}) {
-        const std::string differ =
-            difference(outcome, read(obj, mtl, {.part_bytes = part_bytes, .plain = plain, .progress = {}}));
-        if (!differ.empty()) {
-          return "read differently in parts of " + std::to_string(part_bytes) +
-                 (plain ? " bytes: " : " bytes by the parser of record: ") + differ;
-        }
-      }
+    // Readers must agree: both in the smallest parts, the parser of record on the whole too.
+    struct Other {
+      const char* name;
+      std::size_t part_bytes;
+      bool plain;
+    };
+    constexpr Other others[] = {{"in parts of one line", 1, true},
+                                {"by the parser of record in parts of some lines", 40, false},
+                                {"by the parser of record", std::size_t{1} << 20, false}};
+    for (const auto& [name, part_bytes, plain] : others) {
+      const ObjReading reading = {.part_bytes = part_bytes, .plain = plain, .progress = {}};
+      const std::string differ = difference(outcome, read(obj, mtl, reading));
+      if (!differ.empty()) return std::string("read differently ") + name + ": " + differ;
     }
     return message.empty() ? complaint_about(outcome.scene) : "";
   } catch (const std::exception& error) {
