@@ -18,7 +18,7 @@ namespace coppice {
 namespace {
 
 Scene parse(const std::string& text) {
-  return parse_obj(text, "far.obj", [](const std::string&) { return std::nullopt; });
+  return parse_obj(text, "far.obj", [](const std::string&, MtlMatch) { return std::nullopt; });
 }
 
 std::string read(const std::string& name) {

@@ -33,7 +33,7 @@ SceneArrays scene_arrays(const Scene& scene) {
   }
   arrays.material_index = scene.material_index;
   for (const Material& material : scene.materials) {
-    arrays.materials.push_back({material.emission + material.ambient * scene.ambient_light,
+    arrays.materials.push_back({material.emission + material.diffuse * scene.ambient_light,
                                 material.diffuse * scene.light.radiance});
   }
   arrays.lighting = {scene.light.direction, 0, vec3(0.80f, 0.87f, 0.94f), 0, vec3(0.24f, 0.45f, 0.78f), 0};

@@ -13,6 +13,7 @@
 #include <new>
 
 #include "apps/command_line.h"
+#include "apps/progress.h"
 #include "pipeline/interruption.h"
 
 namespace {
@@ -46,6 +47,7 @@ int main(int argc, char** argv) {
   mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
 #endif
   try {
+    coppice::show_loading();
     return status_after_output(coppice::run_command_line(argc, argv));
   } catch (const coppice::Interrupted& interrupted) {
     std::fprintf(stderr, "coppice: interrupted\n");

@@ -4,6 +4,10 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <memory>
+#include <mutex>
+
+#include "scene/load_obj.h"
 
 namespace coppice {
 
@@ -28,6 +32,24 @@ void Progress::draw() const {
   const std::uint32_t filled = steps_ ? std::min(done_, steps_) * width / steps_ : 0;
   std::fprintf(stderr, "\r%s [%s%s] %u/%u", label_.c_str(), std::string(filled, '#').c_str(),
                std::string(width - filled, ' ').c_str(), done_, steps_);
+}
+
+void show_loading() {
+  static constexpr std::uint32_t steps = 50;
+  struct Loading {
+    std::mutex mutex;
+    std::unique_ptr<Progress> bar;
+    std::uint32_t shown = 0;
+  };
+  show_load_progress = [loading = std::make_shared<Loading>()](const std::string& name, double done) {
+    const std::lock_guard lock(loading->mutex);
+    if (!loading->bar) {
+      loading->bar = std::make_unique<Progress>("loading " + name, steps);
+      loading->shown = 0;
+    }
+    for (; loading->shown < static_cast<std::uint32_t>(done * steps); ++loading->shown) loading->bar->step();
+    if (done >= 1) loading->bar.reset();
+  };
 }
 
 }  // namespace coppice

@@ -21,4 +21,7 @@ class Progress {
   bool shown_;
 };
 
+// Shows a progress bar for every long scene file that is loaded from now on.
+void show_loading();
+
 }  // namespace coppice

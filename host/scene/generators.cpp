@@ -35,7 +35,6 @@ void append_scattered(Scene& scene, glm::vec3 centre, float radius, Random& rand
 Material coloured(std::string name, glm::vec3 colour) {
   Material material;
   material.name = std::move(name);
-  material.ambient = colour;
   material.diffuse = colour;
   return material;
 }

@@ -40,7 +40,7 @@ std::vector<Material> grove_materials() {
   for (const Colour& colour : colours) {
     Material& material = materials.emplace_back();
     material.name = colour.name;
-    material.ambient = material.diffuse = colour.rgb;
+    material.diffuse = colour.rgb;
   }
   return materials;
 }

@@ -1,114 +1,171 @@
 #include "scene/obj_materials.h"
 
-#include <algorithm>
-#include <cmath>
-#include <sstream>
-
+#include "scene/obj_lines.h"
+#include "scene/obj_mtl.h"
 #include "scene/printable.h"
 
 namespace coppice {
 namespace {
 
-constexpr std::size_t MAX_WARNINGS = 20;
+std::string in_quotes(std::string_view name) { return "'" + printable(name) + "'"; }
 
-float finite_or(float value, float otherwise) { return std::isfinite(value) ? value : otherwise; }
-
-glm::vec3 to_colour(const tinyobj::real_t (&rgb)[3]) {
-  return {finite_or(rgb[0], 0), finite_or(rgb[1], 0), finite_or(rgb[2], 0)};
+std::string_view without_quotes(std::string_view name) {
+  const bool has_quotes = name.size() > 2 && name.front() == '"' && name.back() == '"';
+  return has_quotes ? name.substr(1, name.size() - 2) : name;
 }
 
-Material to_material(const tinyobj::material_t& mtl) {
-  Material material;
-  material.name = mtl.name;
-  material.ambient = to_colour(mtl.ambient);
-  material.diffuse = to_colour(mtl.diffuse);
-  material.specular = to_colour(mtl.specular);
-  material.emission = to_colour(mtl.emission);
-  material.shininess = finite_or(mtl.shininess, 1);
-  material.opacity = std::clamp(finite_or(mtl.dissolve, 1), 0.0f, 1.0f);
-  material.index_of_refraction = finite_or(mtl.ior, 1);
-  material.illum = mtl.illum;
-  material.diffuse_map = mtl.diffuse_texname;
-  // Most files that light by textures or path tracing leave Ka out or black, and would be black in every
-  // shadow.
-  if (material.ambient == glm::vec3{0}) material.ambient = material.diffuse;
-  return material;
-}
-
-// tinyobjloader overflows an int on exponents of ten digits. Eight are far beyond what a float holds. The
-// rest of such a word goes too, as tinyobjloader passes over what follows a number. Lines that name a
-// material stay.
-void shorten_exponents(std::string& text) {
-  constexpr std::size_t kept = 8;
-  constexpr const char* blanks = " \t\r\n";
-  bool names_material = false;
-  std::size_t end = 0;
-  for (std::size_t begin; (begin = text.find_first_not_of(blanks, end)) < text.size();) {
-    const std::string_view gap = std::string_view(text).substr(end, begin - end);
-    const bool begins_line = end == 0 || gap.find_first_of("\r\n") != gap.npos;
-    end = std::min(text.find_first_of(blanks, begin), text.size());
-    const std::string_view word = std::string_view(text).substr(begin, end - begin);
-    if (begins_line) names_material = word == "newmtl";
-    const std::size_t e = word.find_first_not_of("+-.0123456789");
-    if (names_material || e == 0 || e >= word.size() || (word[e] != 'e' && word[e] != 'E')) continue;
-    const std::size_t first = std::min(word.find_first_not_of("+-0", e + 1), word.size());
-    const std::size_t last = std::min(word.find_first_not_of("0123456789", first), word.size());
-    if (last - first > kept) std::fill(text.begin() + begin + first + kept, text.begin() + end, ' ');
+// Blanks that are escaped, as some exporters do.
+std::string without_escapes(std::string_view name) {
+  std::string result;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    if (name[i] == '\\' && i + 1 < name.size() && is_blank(name[i + 1])) continue;
+    result += name[i];
   }
+  return result;
+}
+
+// What stands before a word that begins with #.
+std::string_view without_comment(std::string_view line) {
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '#' && (i == 0 || is_blank(line[i - 1]))) return trim(line.substr(0, i));
+  }
+  return line;
+}
+
+// Cuts after every word that ends in .mtl.
+std::vector<std::string> cut_at_extension(std::string_view names) {
+  std::vector<std::string> parts;
+  std::size_t begin = 0;
+  Words words(names);
+  for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
+    const auto end = static_cast<std::size_t>(word.data() + word.size() - names.data());
+    const bool is_last = trim(words.rest()).empty();
+    const std::string lower = lower_case(word);
+    if (!is_last && !lower.ends_with(".mtl") && !lower.ends_with(".mtl\"")) continue;
+    parts.emplace_back(trim(names.substr(begin, end - begin)));
+    begin = end;
+  }
+  return parts;
+}
+
+// Words whose blanks may be escaped.
+std::vector<std::string> cut_at_blanks(std::string_view names) {
+  std::vector<std::string> parts;
+  bool is_joined = false;
+  Words words(names);
+  for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
+    if (is_joined)
+      parts.back().append(" ").append(word);
+    else
+      parts.emplace_back(word);
+    is_joined = word.ends_with('\\');
+  }
+  return parts;
+}
+
+// What two spellings of one name have in common. A # alone begins a comment; #25 is the end of a name.
+std::string fold(std::string_view name) {
+  std::string result;
+  Words words(without_quotes(name));
+  for (std::string_view word = words.next(); !word.empty() && word != "#"; word = words.next()) {
+    result.append(result.empty() ? "" : " ").append(lower_case(word));
+  }
+  return result;
 }
 
 }  // namespace
 
-ObjMaterials::ObjMaterials(ReadMtl read, std::vector<std::string>& warnings)
-    : read_(std::move(read)), warnings_(warnings) {}
-
-bool ObjMaterials::operator()(const std::string& name, std::vector<tinyobj::material_t>*,
-                              std::map<std::string, int>*, std::string*, std::string*) {
-  // Always false, which says "not found": else tinyobjloader would not ask for the other files of the same
-  // line.
-  constexpr bool ask_for_the_next = false;
-
-  std::optional<std::string> text = read_(name);
-  if (!text) {
-    warn("material file '" + printable(std::string_view(name)) + "' not found");
-    return ask_for_the_next;
+void ObjMaterials::read_library(std::string_view names, const std::string& stem, const std::string& place) {
+  if (!statements_.emplace(names).second) return;
+  if (take_file(std::string(names), MtlMatch::AS_WRITTEN, place)) return;
+  for (const std::string& name : cut_at_extension(without_comment(names))) {
+    if (take_file(name, MtlMatch::AS_WRITTEN, place)) continue;
+    std::vector<std::string> missing;
+    const std::vector<std::string> words = cut_at_blanks(name);
+    for (const std::string& word : words) {
+      if (!take_file(word, MtlMatch::AS_WRITTEN, place)) missing.push_back(word);
+    }
+    if (missing.size() == words.size()) missing = {name};
+    for (const std::string& part : missing) take_near(part, stem, place);
   }
-
-  std::vector<tinyobj::material_t> read;
-  std::map<std::string, int> ignored_map;
-  std::string mtl_warnings, ignored_error;
-  shorten_exponents(*text);
-  std::istringstream file(std::move(*text));
-  tinyobj::LoadMtl(&ignored_map, &read, &file, &mtl_warnings, &ignored_error);
-  std::size_t count = 0;
-  for (const tinyobj::material_t& mtl : read) {
-    if (mtl.name.empty()) continue;  // what stood before the first newmtl
-    ++count;
-    if (!index_of_.try_emplace(mtl.name, static_cast<std::uint32_t>(materials_.size())).second) continue;
-    materials_.push_back(to_material(mtl));
-  }
-  if (count == 0) warn("no material in '" + printable(std::string_view(name)) + "'");
-  std::istringstream lines(mtl_warnings);
-  for (std::string line; std::getline(lines, line);) {
-    if (!line.empty())
-      warn("'" + printable(std::string_view(name)) + "': " + printable(std::string_view(line)));
-  }
-  return ask_for_the_next;
 }
 
-std::uint32_t ObjMaterials::find(std::string name) {
-  name.erase(name.find_last_not_of(" \t") + 1);
-  const auto [entry, is_new] = index_of_.try_emplace(name, 0);
-  if (is_new) warn("material '" + printable(std::string_view(name)) + "' not found, default used");
-  return entry->second;
+void ObjMaterials::read_unnamed_library(const std::string& stem, const std::string& place) {
+  const std::string name = stem + ".mtl";
+  if (!take_file(name, MtlMatch::AS_WRITTEN, place) && !take_file(name, MtlMatch::NEAR, place)) return;
+  warnings_.add(ObjWarning::MTL_ELSEWHERE, place, "no mtllib in the file, " + in_quotes(name) + " is used");
 }
 
-void ObjMaterials::warn(std::string line) {
-  if (warnings_.size() == MAX_WARNINGS) line = "more about materials, not shown";
-  if (warnings_.size() > MAX_WARNINGS) return;
-  if (std::find(warnings_.begin(), warnings_.end(), line) == warnings_.end()) {
-    warnings_.push_back(std::move(line));
+// Each way to understand a name that may be meant.
+bool ObjMaterials::take_file(const std::string& name, MtlMatch match, const std::string& place) {
+  std::vector<std::string> spellings = {name};
+  for (const std::string& other : {std::string(without_quotes(name)), without_escapes(name)}) {
+    if (other != name) spellings.push_back(other);
   }
+  for (const std::string& tried : spellings) {
+    if (files_.contains(tried)) return true;
+    if (const std::optional<FoundMtl> found = find_(tried, match)) {
+      if (match == MtlMatch::NEAR) {
+        warnings_.add(
+            ObjWarning::MTL_ELSEWHERE, place,
+            "material file " + in_quotes(name) + " not found, " + in_quotes(found->name) + " is used");
+      }
+      add_materials(*found, place);
+      return true;
+    }
+  }
+  return false;
+}
+
+void ObjMaterials::take_near(const std::string& name, const std::string& stem, const std::string& place) {
+  if (take_file(name, MtlMatch::NEAR, place)) return;
+  const std::string beside = stem + ".mtl";
+  const bool was_read = files_.contains(beside);
+  if (!was_read && take_file(beside, MtlMatch::AS_WRITTEN, place)) {
+    warnings_.add(ObjWarning::MTL_ELSEWHERE, place,
+                  "material file " + in_quotes(name) + " not found, " + in_quotes(beside) + " is used");
+    return;
+  }
+  warnings_.add(ObjWarning::MTL_NOT_FOUND, place, "material file " + in_quotes(name) + " not found");
+}
+
+void ObjMaterials::add_materials(const FoundMtl& file, const std::string& place) {
+  if (!files_.insert(file.name).second) return;
+  const std::string name = printable(std::string_view(file.name));
+  const std::vector<Material> read = parse_mtl(file.text, name, warnings_);
+  if (read.empty()) {
+    warnings_.add(ObjWarning::MTL_WITHOUT_MATERIAL, place, "no material in " + in_quotes(file.name));
+  }
+  for (const Material& material : read) {
+    const auto next = static_cast<std::uint32_t>(materials_.size());
+    const auto [entry, is_new] = index_of_.try_emplace(material.name, next);
+    if (is_new) {
+      index_of_folded_.try_emplace(fold(material.name), next);
+      materials_.push_back(material);
+    } else if (materials_[entry->second] != material) {
+      warnings_.add(
+          ObjWarning::MATERIAL_TWICE, name,
+          "material " + in_quotes(material.name) + " is defined again, the first definition is used");
+    }
+  }
+}
+
+std::uint32_t ObjMaterials::find(const std::string& name, const std::string& place) {
+  const auto found = index_of_.find(name);
+  if (found != index_of_.end()) return found->second;
+  std::uint32_t index = 0;
+  const auto folded = index_of_folded_.find(fold(name));
+  if (folded != index_of_folded_.end()) {
+    index = folded->second;
+    warnings_.add(
+        ObjWarning::MATERIAL_SPELT_OTHERWISE, place,
+        "material " + in_quotes(name) + " not found, " + in_quotes(materials_[index].name) + " is used");
+  } else {
+    warnings_.add(ObjWarning::MATERIAL_NOT_FOUND, place,
+                  "material " + in_quotes(name) + " not found, default used");
+  }
+  index_of_.emplace(name, index);
+  return index;
 }
 
 }  // namespace coppice

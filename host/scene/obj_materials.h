@@ -1,45 +1,48 @@
 #pragma once
 
-#include <tiny_obj_loader.h>
-
-#include <functional>
 #include <map>
-#include <optional>
+#include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "scene/obj_mtl_files.h"
+#include "scene/obj_warnings.h"
 #include "scene/scene.h"
 
 namespace coppice {
 
-// Reads the MTL files that an OBJ names. None of them can fail the load: what is missing or broken becomes a
-// warning.
-class ObjMaterials : public tinyobj::MaterialReader {
+// The materials of the MTL files that an OBJ names. None of them can fail the load: what is missing or broken
+// becomes a warning.
+class ObjMaterials {
  public:
-  // The text of the file of that name, nothing where there is none.
-  using ReadMtl = std::function<std::optional<std::string>(const std::string& name)>;
+  ObjMaterials(FindMtl find, ObjWarnings& warnings) : find_(std::move(find)), warnings_(warnings) {}
 
-  // Warnings are appended to `warnings`.
-  ObjMaterials(ReadMtl read, std::vector<std::string>& warnings);
+  // Reads the files of an mtllib statement: `names` is all that follows the word, at `place` (file:line). The
+  // whole is tried as one name first, then the names that end in .mtl, then each word. Where one is missing,
+  // `stem`.mtl beside the OBJ takes its place.
+  void read_library(std::string_view names, const std::string& stem, const std::string& place);
 
-  // tinyobjloader's hook, called for each file that `mtllib` names.
-  bool operator()(const std::string& name, std::vector<tinyobj::material_t>* materials,
-                  std::map<std::string, int>* material_map, std::string* warning,
-                  std::string* error) override;
+  // Reads `stem`.mtl for an OBJ that uses materials and names no file.
+  void read_unnamed_library(const std::string& stem, const std::string& place);
 
-  // Index of the material of that name, 0 (the default material) with a warning where there is none.
-  std::uint32_t find(std::string name);
+  // Index of the material of that name, 0 (the default material) with a warning where there is none. Letter
+  // case, blanks, quotes and a comment may differ where no name is the same.
+  std::uint32_t find(const std::string& name, const std::string& place);
 
   // The default material, then those of the files in order.
   std::vector<Material> take() { return std::move(materials_); }
 
  private:
-  void warn(std::string line);
+  bool take_file(const std::string& name, MtlMatch match, const std::string& place);
+  void take_near(const std::string& name, const std::string& stem, const std::string& place);
+  void add_materials(const FoundMtl& file, const std::string& place);
 
-  ReadMtl read_;
-  std::vector<std::string>& warnings_;
+  FindMtl find_;
+  ObjWarnings& warnings_;
   std::vector<Material> materials_ = {Material{}};
-  std::map<std::string, std::uint32_t, std::less<>> index_of_;
+  std::map<std::string, std::uint32_t, std::less<>> index_of_, index_of_folded_;
+  std::set<std::string, std::less<>> statements_, files_;  // read
 };
 
 }  // namespace coppice

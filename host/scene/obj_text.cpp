@@ -1,45 +1,21 @@
-#include "scene/obj_text.h"
+// The parser of record of OBJ text: what may be unusual is checked here, and tinyobjloader reads the faces.
+#include <tiny_obj_loader.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstdint>
 #include <cstdlib>
-#include <cstring>
-#include <fstream>
 #include <limits>
-#include <string_view>
-#include <system_error>
+#include <span>
+#include <sstream>
 
-#include "scene/input_error.h"
+#include "scene/obj_lines.h"
+#include "scene/obj_part.h"
 #include "scene/printable.h"
 
 namespace coppice {
 namespace {
-
-bool is_blank(char c) { return c == ' ' || c == '\t'; }
-
-// The blank-separated words of a line.
-class Words {
- public:
-  explicit Words(std::string_view line) : rest_(line) {}
-
-  // The next word, empty at the end of the line.
-  std::string_view next() {
-    std::size_t begin = 0;
-    while (begin < rest_.size() && is_blank(rest_[begin])) ++begin;
-    std::size_t end = begin;
-    while (end < rest_.size() && !is_blank(rest_[end])) ++end;
-    const std::string_view word = rest_.substr(begin, end - begin);
-    rest_.remove_prefix(end);
-    return word;
-  }
-
- private:
-  std::string_view rest_;
-};
 
 // The number nearest to a word: infinite where it is too large, NaN where the word is no number.
 template <class Number>
@@ -52,17 +28,9 @@ Number parse_number(std::string_view word, Number (*parse_out_of_range)(const ch
   if (parsed_end != end || error == std::errc::invalid_argument) {
     return std::numeric_limits<Number>::quiet_NaN();
   }
-  // from_chars does not tell too large from too small; strtof does, and stops at the blank that ends the
-  // word.
-  return error == std::errc::result_out_of_range ? parse_out_of_range(begin, nullptr) : value;
-}
-
-// The float nearest to a word, less `offset`.
-float parse_coordinate(std::string_view word, double offset) {
-  if (offset == 0) return parse_number<float>(word, std::strtof);
-  const double value = parse_number<double>(word, std::strtod) - offset;
-  if (!(std::abs(value) > std::numeric_limits<float>::max())) return static_cast<float>(value);
-  return std::copysign(std::numeric_limits<float>::infinity(), value < 0 ? -1.0f : 1.0f);
+  if (error != std::errc::result_out_of_range) return value;
+  // from_chars does not tell too large from too small.
+  return parse_out_of_range(std::string(begin, end).c_str(), nullptr);
 }
 
 constexpr std::array STATEMENTS =
@@ -71,184 +39,168 @@ constexpr std::array STATEMENTS =
 
 class ObjChecker {
  public:
-  ObjChecker(std::string name, ObjText& obj, glm::dvec3 offset)
-      : name_(std::move(name)), obj_(obj), offset_(offset) {}
+  ObjChecker(std::string& text, glm::dvec3 offset, ObjPart& part)
+      : text_(text), offset_(offset), part_(part) {}
 
+  // Leaves text that a parser that trusts its input may read: vertices without numbers and faces of at least
+  // three indices that are numbers, but not 0.
   void check() {
-    std::string& text = obj_.text;
-    if (text.find('\0') != std::string::npos) throw InputError(name_ + ": a binary file, not an OBJ file");
-    if (text.starts_with("\xEF\xBB\xBF")) std::fill_n(text.begin(), 3, ' ');  // byte order mark
-
-    for (std::size_t begin = 0; begin < text.size();) {
-      ++line_number_;
-      lines_in_statement_ = 1;
-      const std::size_t end = find_line_end(begin);
-      check_line(begin, end);
-      // CR LF ends one line, as LF and a lone CR do.
-      begin = end + (text.compare(end, 2, "\r\n") == 0 ? 2 : 1);
-      line_number_ += lines_in_statement_ - 1;
+    if (text_.find('\0') != text_.npos) {
+      part_.is_binary = true;
+      return;
     }
-    finish();
+    for (std::size_t begin = 0; begin < text_.size();) {
+      const StatementPlace statement = join_statement(text_, begin);
+      line_ = part_.line_count + 1;
+      part_.line_count += statement.lines;
+      check_statement(statement.begin, statement.end);
+      if (part_.error) {
+        blank_out(statement.begin, text_.size());
+        return;
+      }
+      begin = statement.next;
+    }
   }
 
  private:
-  // The end of the line at `begin`. A backslash before it continues the line, unless that is a comment, which
-  // may well end in a Windows path: both are blanked out.
-  std::size_t find_line_end(std::size_t begin) {
-    std::string& text = obj_.text;
-    std::size_t end = begin;
-    const bool is_comment = text[begin] == '#';
-    while (true) {
-      while (end < text.size() && text[end] != '\n' && text[end] != '\r') ++end;
-      if (end == text.size() || end == begin || text[end - 1] != '\\' || is_comment) return end;
-      const std::size_t next_line = end + (text.compare(end, 2, "\r\n") == 0 ? 2 : 1);
-      blank_out(end - 1, next_line);
-      end = next_line;
-      ++lines_in_statement_;
-    }
-  }
-
-  void check_line(std::size_t begin, std::size_t end) {
-    Words words(std::string_view(obj_.text).substr(begin, end - begin));
+  void check_statement(std::size_t begin, std::size_t end) {
+    Words words(std::string_view(text_).substr(begin, end - begin));
     const std::string_view keyword = words.next();
     if (keyword.empty() || keyword[0] == '#') return;
-    if (!recognised_) {
-      recognised_ = std::find(STATEMENTS.begin(), STATEMENTS.end(), keyword) != STATEMENTS.end();
+    if (!part_.recognised) {
+      part_.recognised = std::find(STATEMENTS.begin(), STATEMENTS.end(), keyword) != STATEMENTS.end();
     }
+    const std::string lower = keyword.size() == 6 ? lower_case(keyword) : "";
     // tinyobjloader overflows an int on exponents of ten digits, so it sees no numbers but indices.
     if (keyword == "v") {
       read_vertex(words);
       blank_out(offset_of(keyword) + 1, end);
-    } else if (keyword == "vn" || keyword == "vt") {
-      blank_out(begin, end);
     } else if (keyword == "f") {
-      check_face(words, end);
+      check_face(words, begin, end);
+    } else {
+      if (lower == "usemtl" || lower == "mtllib") read_material(lower, trim(words.rest()));
+      if (keyword == "surf" || keyword == "curv" || keyword == "curv2") part_.free_form.add(line_);
+      blank_out(begin, end);
     }
+  }
+
+  void read_material(std::string_view keyword, std::string_view name) {
+    part_.recognised = true;
+    if (name.empty()) return;
+    if (keyword == "usemtl")
+      part_.uses.push_back({face_count_, std::string(name), line_});
+    else
+      part_.libraries.push_back({std::string(name), line_});
   }
 
   std::size_t offset_of(std::string_view word) const {
-    return static_cast<std::size_t>(word.data() - obj_.text.data());
+    return static_cast<std::size_t>(word.data() - text_.data());
   }
 
   void blank_out(std::size_t begin, std::size_t end) {
-    std::fill(obj_.text.begin() + static_cast<std::ptrdiff_t>(begin),
-              obj_.text.begin() + static_cast<std::ptrdiff_t>(end), ' ');
+    std::fill(text_.begin() + static_cast<std::ptrdiff_t>(begin),
+              text_.begin() + static_cast<std::ptrdiff_t>(end), ' ');
   }
 
-  void read_vertex(Words& words) {
+  void read_vertex(Words words) {
+    words = Words(words.rest().substr(0, words.rest().find('#')));
     glm::vec3 position;
     for (int axis = 0; axis < 3; ++axis) {
       const std::string_view word = words.next();
-      if (word.empty()) fail("vertex with " + std::to_string(axis) + " coordinates, 3 are needed");
+      if (word.empty()) return fail("vertex with " + std::to_string(axis) + " coordinates, 3 are needed");
       position[axis] = parse_coordinate(word, offset_[axis]);
     }
     if (!std::isfinite(position.x) || !std::isfinite(position.y) || !std::isfinite(position.z)) {
-      if (non_finite_count_++ == 0) first_non_finite_line_ = line_number_;
+      part_.non_finite.add(line_);
     }
-    obj_.positions.push_back(position);
+    if (is_vertex_colour(words.rest())) part_.coloured.add(line_);
+    part_.positions.push_back(position);
   }
 
-  void check_face(Words& words, std::size_t line_end) {
-    std::size_t vertex_count = 0;
+  void check_face(Words words, std::size_t begin, std::size_t end) {
+    const std::size_t comment = std::string_view(text_).substr(begin, end - begin).find('#');
+    if (comment != std::string_view::npos) blank_out(begin + comment, end);
+    std::size_t corner_count = 0;
+    for (Words counted = words; !counted.next().empty();) ++corner_count;
+    if (corner_count < 3) {
+      part_.small_faces.add(line_);
+      blank_out(begin, end);
+      return;
+    }
     for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
-      if (word[0] == '#') {
-        blank_out(offset_of(word), line_end);
-        break;
-      }
-      check_index(word);
-      ++vertex_count;
+      if (!check_index(word)) return;
     }
-    if (vertex_count < 3) {
-      fail("face with " + std::to_string(vertex_count) + (vertex_count == 1 ? " vertex" : " vertices") +
-           ", at least 3 are needed");
-    }
+    if (corner_count > 3) part_.polygon_lines.push_back(static_cast<std::uint32_t>(line_));
     ++face_count_;
   }
 
   // `word` is i, i/j, i//k or i/j/k; of these only i is looked at, for normals and texture coordinates are
   // not used. With another slash tinyobjloader would take the rest for an index 0.
-  void check_index(std::string_view word) {
-    const std::string_view digits = word.substr(0, word.find('/'));
-    if (std::count(word.begin(), word.end(), '/') > 2) fail("'" + printable(word) + "' is no vertex index");
+  bool check_index(std::string_view word) {
+    std::string_view digits = word.substr(0, word.find('/'));
+    if (digits.starts_with('+')) digits.remove_prefix(1);
     std::int32_t index = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
-    if (end != digits.data() + digits.size() || error == std::errc::invalid_argument) {
-      fail("'" + printable(word) + "' is no vertex index");
+    if (end != digits.data() + digits.size() || error == std::errc::invalid_argument ||
+        std::count(word.begin(), word.end(), '/') > 2 || word.starts_with("+-")) {
+      return fail("'" + printable(word) + "' is no vertex index"), false;
     }
-    if (error == std::errc::result_out_of_range)
-      fail("vertex index " + printable(digits) + " is out of range");
-    if (index == 0) fail("vertex index 0 is out of range: the first vertex is 1");
-
-    const auto so_far = static_cast<std::int64_t>(obj_.positions.size());
-    if (index < 0 && -std::int64_t{index} > so_far) {
-      fail("vertex index " + std::to_string(index) + " is out of range: there are " + std::to_string(so_far) +
-           " vertices before it");
+    if (error == std::errc::result_out_of_range) {
+      return fail("vertex index " + printable(digits) + " is out of range"), false;
     }
-    // A vertex may follow the face that names it, so an index too large is only known at the end.
-    if (index > so_far && index > greatest_forward_index_) {
-      greatest_forward_index_ = index;
-      greatest_forward_line_ = line_number_;
-    }
+    if (index == 0) return fail("vertex index 0 is out of range: the first vertex is 1"), false;
+    part_.note_index(index, line_);
+    return true;
   }
 
-  void finish() {
-    if (!recognised_) throw InputError(name_ + ": not an OBJ file: no statement of the format in it");
-    const std::size_t vertex_count = obj_.positions.size();
-    if (greatest_forward_index_ > static_cast<std::int64_t>(vertex_count)) {
-      line_number_ = greatest_forward_line_;
-      fail("vertex index " + std::to_string(greatest_forward_index_) + " is out of range: the file has " +
-           std::to_string(vertex_count) + (vertex_count == 1 ? " vertex" : " vertices"));
-    }
-    if (face_count_ == 0) obj_.warnings.push_back(name_ + ": no faces");
-    if (non_finite_count_ > 0) {
-      obj_.warnings.push_back(name_ + ": " + std::to_string(non_finite_count_) +
-                              (non_finite_count_ == 1 ? " vertex" : " vertices") +
-                              " with a coordinate that is no finite number, first in line " +
-                              std::to_string(first_non_finite_line_));
-    }
-  }
+  void fail(std::string what) { part_.error = {line_, std::move(what)}; }
 
-  [[noreturn]] void fail(const std::string& what) const {
-    throw InputError(name_ + ":" + std::to_string(line_number_) + ": " + what);
-  }
-
-  std::string name_;
-  ObjText& obj_;
+  std::string& text_;
   const glm::dvec3 offset_;
-  std::size_t line_number_ = 0;         // of the first line of the statement, from 1
-  std::size_t lines_in_statement_ = 1;  // more where lines are continued
-  bool recognised_ = false;             // whether any statement was one of the format's
+  ObjPart& part_;
+  std::size_t line_ = 0;  // of the statement's first line
   std::size_t face_count_ = 0;
-  std::size_t non_finite_count_ = 0;
-  std::size_t first_non_finite_line_ = 0;
-  std::int64_t greatest_forward_index_ = 0;
-  std::size_t greatest_forward_line_ = 0;
 };
+
+// What tinyobjloader's callbacks add to.
+struct Reading {
+  ObjPart& part;
+  std::size_t vertices_so_far = 0;
+
+  void add_face(std::span<const tinyobj::index_t> corners) {
+    for (const tinyobj::index_t& corner : corners) part.add_corner(corner.vertex_index, vertices_so_far);
+    part.end_face();
+  }
+};
+
+tinyobj::callback_t callbacks() {
+  tinyobj::callback_t result;
+  result.vertex_cb = [](void* user, auto...) { ++static_cast<Reading*>(user)->vertices_so_far; };
+  result.index_cb = [](void* user, tinyobj::index_t* corners, int count) {
+    static_cast<Reading*>(user)->add_face({corners, static_cast<std::size_t>(count)});
+  };
+  return result;
+}
 
 }  // namespace
 
-std::string read_obj_file(const std::filesystem::path& path) {
-  const std::string name = printable(path);
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw InputError(name + ": no such file");
-  if (std::filesystem::is_directory(status)) throw InputError(name + ": is a directory, not an OBJ file");
-  if (!std::filesystem::is_regular_file(status)) throw InputError(name + ": not a regular file");
-
-  const auto size = std::filesystem::file_size(path, error);
-  std::ifstream file(path, std::ios::binary);
-  if (error || !file) throw InputError(name + ": cannot open: " + std::strerror(errno));
-  if (size == 0) throw InputError(name + ": empty file");
-  std::string text(size, '\0');
-  if (!file.read(text.data(), static_cast<std::streamsize>(size))) throw InputError(name + ": cannot read");
-  return text;
+float parse_coordinate(std::string_view word, double offset) {
+  if (offset == 0) return parse_number<float>(word, std::strtof);
+  const double value = parse_number<double>(word, std::strtod) - offset;
+  if (!(std::abs(value) > std::numeric_limits<float>::max())) return static_cast<float>(value);
+  return std::copysign(std::numeric_limits<float>::infinity(), value < 0 ? -1.0f : 1.0f);
 }
 
-ObjText check_obj_text(std::string text, const std::string& name, glm::dvec3 offset) {
-  ObjText obj;
-  obj.text = std::move(text);
-  ObjChecker(name, obj, offset).check();
-  return obj;
+// By callbacks, not LoadObj: that one drops triangles of polygons that it cannot cut, takes quadratic time
+// over large ones, and fails on lines and points with odd indices, which we have no use for.
+ObjPart read_obj_part(std::string text, glm::dvec3 offset) {
+  ObjPart part;
+  ObjChecker(text, offset, part).check();
+  if (part.is_binary) return part;
+  Reading reading{.part = part};
+  std::istringstream stream(std::move(text));
+  tinyobj::LoadObjWithCallback(stream, callbacks(), &reading);
+  return part;
 }
 
 }  // namespace coppice

@@ -14,8 +14,7 @@ namespace coppice {
 // What a surface is made of, in the terms of the MTL format. Colours are linear RGB, unbounded for emission.
 struct Material {
   std::string name = "default";
-  glm::vec3 ambient{0.7f};           // Ka
-  glm::vec3 diffuse{0.7f};           // Kd
+  glm::vec3 diffuse{0.7f};           // Kd; of all light, the ambient too
   glm::vec3 specular{0.0f};          // Ks
   glm::vec3 emission{0.0f};          // Ke
   float shininess = 1.0f;            // Ns, the Phong exponent
@@ -23,6 +22,8 @@ struct Material {
   float index_of_refraction = 1.0f;  // Ni
   int illum = 1;                     // illumination model, 0 to 10
   std::string diffuse_map;  // map_Kd as written, a path relative to the MTL file; empty where there is none
+
+  bool operator==(const Material&) const = default;
 };
 
 // A light infinitely far away.
@@ -55,7 +56,7 @@ struct Scene {
   std::vector<Material> materials = {Material{}};  // never empty
   std::optional<Camera> camera;                    // absent: frame_scene chooses one
   DirectionalLight light;
-  glm::vec3 ambient_light{0.35f};     // linear RGB, multiplies Material::ambient
+  glm::vec3 ambient_light{0.35f};     // linear RGB, multiplies Material::diffuse
   std::vector<std::string> warnings;  // one line each, what was odd about the input but not fatal
 };
 

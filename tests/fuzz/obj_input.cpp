@@ -1,7 +1,10 @@
 #include "fuzz/obj_input.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include "scene/input_error.h"
 #include "scene/load_obj.h"
@@ -18,9 +21,9 @@ bool is_one_line(const std::string& text) {
 bool is_finite(glm::vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 bool is_sound(const Material& material) {
-  return is_finite(material.ambient) && is_finite(material.diffuse) && is_finite(material.specular) &&
-         is_finite(material.emission) && std::isfinite(material.shininess) &&
-         std::isfinite(material.index_of_refraction) && material.opacity >= 0 && material.opacity <= 1;
+  return is_finite(material.diffuse) && is_finite(material.specular) && is_finite(material.emission) &&
+         std::isfinite(material.shininess) && std::isfinite(material.index_of_refraction) &&
+         material.opacity >= 0 && material.opacity <= 1;
 }
 
 std::string complaint_about(const Scene& scene) {
@@ -43,22 +46,75 @@ std::string complaint_about(const Scene& scene) {
   return "";
 }
 
+// The scene, or the message of the InputError.
+struct Outcome {
+  Scene scene;
+  std::string message;
+};
+
+Outcome read(std::string_view obj, const std::string& mtl, const ObjReading& reading) {
+  const auto find_mtl = [&](const std::string& name, MtlMatch) -> std::optional<FoundMtl> {
+    if (name.starts_with("missing")) return std::nullopt;
+    return FoundMtl{name, mtl};
+  };
+  try {
+    return {parse_obj(obj, "fuzz.obj", find_mtl, reading), ""};
+  } catch (const InputError& error) {
+    return {{}, error.what()};
+  }
+}
+
+bool is_same(const std::vector<glm::vec3>& a, const std::vector<glm::vec3>& b) {
+  const auto is_same_bits = [](glm::vec3 p, glm::vec3 q) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const bool are_nan = std::isnan(p[axis]) && std::isnan(q[axis]);
+      if (!are_nan && std::bit_cast<std::uint32_t>(p[axis]) != std::bit_cast<std::uint32_t>(q[axis])) {
+        return false;
+      }
+    }
+    return true;
+  };
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), is_same_bits);
+}
+
+std::string difference(const Outcome& a, const Outcome& b) {
+  if (a.message != b.message) return "messages '" + a.message + "' and '" + b.message + "'";
+  if (!is_same(a.scene.positions, b.scene.positions)) return "positions";
+  if (a.scene.indices != b.scene.indices) return "triangles";
+  if (a.scene.material_index != b.scene.material_index) return "material indices";
+  if (a.scene.materials != b.scene.materials) return "materials";
+  if (a.scene.warnings != b.scene.warnings) return "warnings";
+  return "";
+}
+
 }  // namespace
 
 std::string complaint_about_obj(std::string_view input) {
   constexpr std::string_view separator = "\n===\n";
   const std::size_t end = input.find(separator);
-  const std::string obj(input.substr(0, end));
+  const std::string_view obj = input.substr(0, end);
   const std::string mtl(end == input.npos ? "" : input.substr(end + separator.size()));
   try {
-    return complaint_about(
-        parse_obj(obj, "fuzz.obj", [&](const std::string& name) -> std::optional<std::string> {
-          if (name.starts_with("missing")) return std::nullopt;
-          return mtl;
-        }));
-  } catch (const InputError& error) {
-    const std::string what = error.what();
-    return is_one_line(what) && what.starts_with("fuzz.obj:") ? "" : "message '" + what + "'";
+    const Outcome outcome = read(obj, mtl, {});
+    const std::string& message = outcome.message;
+    if (!message.empty() && (!is_one_line(message) || !message.starts_with("fuzz.obj:"))) {
+      return "message '" + message + "'";
+    }
+    // Readers must agree: both in the smallest parts, the parser of record on the whole too.
+    struct Other {
+      const char* name;
+      std::size_t part_bytes;
+      bool plain;
+    };
+    constexpr Other others[] = {{"in parts of one line", 1, true},
+                                {"by the parser of record in parts of some lines", 40, false},
+                                {"by the parser of record", std::size_t{1} << 20, false}};
+    for (const auto& [name, part_bytes, plain] : others) {
+      const ObjReading reading = {.part_bytes = part_bytes, .plain = plain, .progress = {}};
+      const std::string differ = difference(outcome, read(obj, mtl, reading));
+      if (!differ.empty()) return std::string("read differently ") + name + ": " + differ;
+    }
+    return message.empty() ? complaint_about(outcome.scene) : "";
   } catch (const std::exception& error) {
     return std::string("exception ") + error.what();
   }

@@ -1,0 +1,74 @@
+#include "scene/obj_mtl_files.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+#include "scene/obj_lines.h"
+
+namespace coppice {
+
+std::optional<FoundMtl> MtlFolder::find(const std::string& name, MtlMatch match) {
+  std::string slashes = name;
+  std::replace(slashes.begin(), slashes.end(), '\\', '/');
+  if (name.empty() || name.find('\0') != name.npos) return std::nullopt;
+  if (match == MtlMatch::AS_WRITTEN) {
+    std::optional<FoundMtl> found = read(name);
+    return found || slashes == name ? found : read(slashes);
+  }
+  const std::filesystem::path path = slashes;
+  for (const auto& tried : {path, path.filename()}) {
+    if (tried.empty()) continue;
+    if (std::optional<FoundMtl> found = read(tried)) return found;
+    if (const auto other = find_in_any_case(tried)) {
+      if (std::optional<FoundMtl> found = read(*other)) return found;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<std::filesystem::path> MtlFolder::find_in_any_case(const std::filesystem::path& relative) {
+  std::filesystem::path found;
+  for (const std::filesystem::path& step : relative) {
+    const std::filesystem::path as_written = found / step;
+    std::error_code error;
+    if (std::filesystem::exists(folder_ / as_written, error)) {
+      found = as_written;
+      continue;
+    }
+    const auto& names = list(folder_ / found);
+    const auto is_same = [lower = lower_case(step.string())](const std::filesystem::path& name) {
+      return lower_case(name.string()) == lower;
+    };
+    const auto name = std::find_if(names.begin(), names.end(), is_same);
+    if (name == names.end()) return std::nullopt;
+    found /= *name;
+  }
+  return found;
+}
+
+const std::vector<std::filesystem::path>& MtlFolder::list(const std::filesystem::path& folder) {
+  const auto [entry, is_new] = listings_.try_emplace(folder);
+  if (is_new) {
+    std::error_code error;
+    std::filesystem::directory_iterator at(folder.empty() ? "." : folder, error);
+    for (; !error && at != std::filesystem::directory_iterator(); at.increment(error)) {
+      entry->second.push_back(at->path().filename());
+    }
+    std::sort(entry->second.begin(), entry->second.end());
+  }
+  return entry->second;
+}
+
+std::optional<FoundMtl> MtlFolder::read(const std::filesystem::path& relative) const {
+  const std::filesystem::path path = folder_ / relative;
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;
+  if (std::filesystem::file_size(path, error) > MAX_MTL_BYTES || error) return std::nullopt;
+  std::ifstream file(path, std::ios::binary);
+  if (!file.is_open()) return std::nullopt;
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  return FoundMtl{relative.lexically_normal().string(), std::move(text)};
+}
+
+}  // namespace coppice

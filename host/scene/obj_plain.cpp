@@ -1,0 +1,206 @@
+// The fast reader of plain parts. It gives up at the first thing that is not plain; the parser of record then
+// says what it is.
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "scene/obj_lines.h"
+#include "scene/obj_part.h"
+
+namespace coppice {
+namespace {
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool ends_word(char c) { return is_blank(c) || c == '\n' || c == '\r'; }
+
+class PlainReader {
+ public:
+  PlainReader(std::string_view text, glm::dvec3 offset, ObjPart& part)
+      : at_(text.data()), end_(at_ + text.size()), offset_(offset), part_(part) {}
+
+  // Whether all was plain.
+  bool read() {
+    while (at_ != end_) {
+      ++part_.line_count;
+      if (!read_line()) return false;
+    }
+    return true;
+  }
+
+ private:
+  bool read_line() {
+    skip_blanks();
+    if (at_line_end()) return end_line();
+    const auto left = static_cast<std::size_t>(end_ - at_);
+    const char first = *at_, second = left > 1 ? at_[1] : '\n', third = left > 2 ? at_[2] : '\n';
+    if (first == '#') return skip_comment();
+    if (first == 'v' && is_blank(second)) return ++at_, part_.recognised = true, read_vertex();
+    if (first == 'f' && is_blank(second)) return ++at_, part_.recognised = true, read_face();
+    if (first == 'v' && (second == 'n' || second == 't') && ends_word(third)) return read_over();
+    if ((first == 'g' || first == 'o' || first == 's') && ends_word(second)) return read_over();
+    return read_material(std::string_view(at_, left));
+  }
+
+  // Of the keyword on, which is not empty.
+  bool read_over() {
+    part_.recognised = true;
+    std::string_view ignored;
+    return take_line(ignored);
+  }
+
+  bool read_material(std::string_view rest) {
+    const bool is_use = rest.starts_with("usemtl");
+    if ((!is_use && !rest.starts_with("mtllib")) || rest.size() == 6 || !is_blank(rest[6])) return false;
+    part_.recognised = true;
+    at_ += 6;
+    std::string_view name;
+    if (!take_line(name)) return false;
+    name = trim(name);
+    if (name.empty()) return true;
+    if (is_use)
+      part_.uses.push_back({part_.face_ends.size(), std::string(name), part_.line_count});
+    else
+      part_.libraries.push_back({std::string(name), part_.line_count});
+    return true;
+  }
+
+  bool read_vertex() {
+    glm::vec3 position;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!read_coordinate(offset_[axis], position[axis])) return false;
+    }
+    part_.positions.push_back(position);
+    skip_blanks();
+    if (at_line_end()) return end_line();
+    if (*at_ == '#') return skip_comment();
+    std::string_view rest;
+    if (!take_line(rest)) return false;
+    if (is_vertex_colour(rest)) part_.coloured.add(part_.line_count);
+    return true;
+  }
+
+  bool read_coordinate(double offset, float& result) {
+    skip_blanks();
+    if (offset != 0) {
+      double value = 0;
+      if (!read_number(value)) return false;
+      value -= offset;
+      if (!(std::abs(value) <= std::numeric_limits<float>::max())) return false;
+      result = static_cast<float>(value);
+      return true;
+    }
+    return read_number(result);
+  }
+
+  template <class Number>
+  bool read_number(Number& number) {
+    const auto [parsed_end, error] = std::from_chars(at_, end_, number);
+    if (error != std::errc{} || !std::isfinite(number)) return false;
+    at_ = parsed_end;
+    return at_line_end() || is_blank(*at_);
+  }
+
+  bool read_face() {
+    const std::size_t first_corner = part_.corners.size();
+    while (true) {
+      skip_blanks();
+      if (at_line_end() || *at_ == '#') break;
+      if (!read_corner()) return false;
+    }
+    const std::size_t count = part_.corners.size() - first_corner;
+    if (count < 3) return false;
+    if (count > 3) part_.polygon_lines.push_back(static_cast<std::uint32_t>(part_.line_count));
+    part_.end_face();
+    return at_line_end() ? end_line() : skip_comment();
+  }
+
+  // i, i/j, i//k or i/j/k. Only i is used.
+  bool read_corner() {
+    const bool is_negative = *at_ == '-';
+    if (is_negative) ++at_;
+    const char* const digits = at_;
+    std::int32_t index = 0;
+    for (; at_ != end_ && is_digit(*at_); ++at_) {
+      if (at_ - digits == 9) return false;  // may not fit
+      index = index * 10 + (*at_ - '0');
+    }
+    if (index == 0) return false;
+    if (is_negative) index = -index;
+    int slashes = 0;
+    if (at_ != end_ && *at_ == '/') {
+      for (; at_ != end_ && (is_digit(*at_) || *at_ == '/' || *at_ == '-'); ++at_) slashes += *at_ == '/';
+    }
+    if (slashes > 2 || !(at_line_end() || is_blank(*at_))) return false;
+    part_.note_index(index, part_.line_count);
+    part_.add_corner(index, part_.positions.size());
+    return true;
+  }
+
+  void skip_blanks() {
+    while (at_ != end_ && is_blank(*at_)) ++at_;
+  }
+
+  bool at_line_end() const { return at_ == end_ || *at_ == '\n' || *at_ == '\r'; }
+
+  // A CR stands only before an LF, see read_plain_obj_part.
+  bool end_line() {
+    if (at_ != end_ && *at_ == '\r') ++at_;
+    if (at_ != end_) ++at_;
+    return true;
+  }
+
+  const char* find_line_end() const {
+    const void* const found = std::memchr(at_, '\n', static_cast<std::size_t>(end_ - at_));
+    return found ? static_cast<const char*>(found) : end_;
+  }
+
+  bool skip_comment() {
+    at_ = find_line_end();
+    return end_line();
+  }
+
+  // The rest of the line; false if it is continued.
+  bool take_line(std::string_view& line) {
+    const char* const line_end = find_line_end();
+    line = {at_, static_cast<std::size_t>(line_end - at_)};
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    at_ = line_end;
+    return !trim(line).ends_with('\\') && end_line();
+  }
+
+  const char* at_;
+  const char* const end_;
+  const glm::dvec3 offset_;
+  ObjPart& part_;
+};
+
+// Whether there is no zero byte, and no CR but before an LF.
+bool has_plain_bytes(std::string_view text) {
+  if (std::memchr(text.data(), '\0', text.size())) return false;
+  for (std::size_t at = 0; (at = text.find('\r', at)) != text.npos; ++at) {
+    if (at + 1 == text.size() || text[at + 1] != '\n') return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+bool is_vertex_colour(std::string_view rest) {
+  Words words(rest.substr(0, rest.find('#')));
+  std::size_t count = 0;
+  while (count < 3 && !words.next().empty()) ++count;
+  return count == 3;
+}
+
+std::optional<ObjPart> read_plain_obj_part(std::string_view text, glm::dvec3 offset) {
+  if (!has_plain_bytes(text)) return std::nullopt;
+  std::optional<ObjPart> part(std::in_place);
+  part->positions.reserve(text.size() / 64);
+  part->corners.reserve(text.size() / 16);
+  part->face_ends.reserve(text.size() / 48);
+  if (!PlainReader(text, offset, *part).read()) return std::nullopt;
+  return part;
+}
+
+}  // namespace coppice
