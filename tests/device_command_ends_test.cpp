@@ -14,14 +14,6 @@ namespace {
 
 class CommandEnds : public Command {
  protected:
-  // As run, with what the shell does before: "ulimit ...;" or "NAME=VALUE ".
-  static Outcome run_after(const std::string& before, const std::string& arguments) {
-    const std::string command =
-        before + " timeout 120 " + COPPICE_PROGRAM + " " + arguments + " >stdout.txt 2>stderr.txt";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("stdout.txt"), read("stderr.txt")};
-  }
-
   static pid_t start(const std::vector<const char*>& arguments) {
     const pid_t child = fork();
     if (child != 0) return child;
@@ -77,10 +69,10 @@ TEST_F(CommandEnds, ASignalWhileTracingEndsItWithALineAndNoFile) {
 
 TEST_F(CommandEnds, WithoutMemoryForTheDeviceItSaysHowMuchItWanted) {
   for (const char* arguments : {"build scatter:2000000 --runs 1", "render scatter:2000000 -o out.png"}) {
-    const Outcome outcome = run_after("ulimit -v 1000000;", arguments);
+    const Outcome outcome = run_in(1000000, arguments);
     EXPECT_EQ(outcome.status, 1) << arguments;
     EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
-    EXPECT_NE(outcome.err.find("out of memory"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("memory"), std::string::npos) << outcome.err;
     EXPECT_NE(outcome.err.find(" bytes"), std::string::npos) << outcome.err;
   }
 }
@@ -88,16 +80,16 @@ TEST_F(CommandEnds, WithoutMemoryForTheDeviceItSaysHowMuchItWanted) {
 TEST_F(CommandEnds, WithoutALoaderItSaysSoInOneLine) {
   fs::create_directory("nothing");
   for (const char* name : {"nothing/libvulkan.so", "nothing/libvulkan.so.1"}) write(name, "");
-  const Outcome outcome = run_after("LD_LIBRARY_PATH=$PWD/nothing", "render one.obj -o out.png");
+  const Outcome outcome = run_with("LD_LIBRARY_PATH=$PWD/nothing ", "render one.obj -o out.png");
   EXPECT_EQ(outcome.status, 1);
   EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
   EXPECT_NE(outcome.err.find("ulkan"), std::string::npos) << outcome.err;
 }
 
 TEST_F(CommandEnds, WithoutTimestampsTimesAreTheHostsAndKernelsHaveNone) {
-  const std::string without = "COPPICE_NO_TIMESTAMPS=1";
+  const std::string without = "COPPICE_NO_TIMESTAMPS=1 ";
   const Outcome outcome =
-      run_after(without, "render terrain:500 --size 64x48 --tree wide --kernels -o out.png --json out.json");
+      run_with(without, "render terrain:500 --size 64x48 --tree wide --kernels -o out.png --json out.json");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.err.find("no timestamps"), std::string::npos) << outcome.err;
   EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
@@ -113,7 +105,7 @@ TEST_F(CommandEnds, WithoutTimestampsTimesAreTheHostsAndKernelsHaveNone) {
   EXPECT_NEAR(render["mrays_per_s"], 64 * 48 / render["trace_ms"].get<double>() / 1000, 1e-9);
   for (const char* arguments : {"sort --most 1024 --only sort_keys_32", "scan --most 1024",
                                 "trace terrain:500 --size 32x24", "build --most 3000 --builder gpu-ploc"}) {
-    const Outcome bench = run_after(without, std::string("bench ") + arguments + " --runs 2 --json -");
+    const Outcome bench = run_with(without, std::string("bench ") + arguments + " --runs 2 --json -");
     ASSERT_EQ(bench.status, 0) << arguments << ": " << bench.err;
     const auto report = nlohmann::json::parse(bench.out);
     EXPECT_FALSE(report["rows"].empty()) << arguments;
@@ -122,7 +114,7 @@ TEST_F(CommandEnds, WithoutTimestampsTimesAreTheHostsAndKernelsHaveNone) {
       EXPECT_GT(row["millions_per_s"], 0) << arguments;
     }
   }
-  EXPECT_EQ(run_after(without, "bench ploc --most 5000 --runs 2").status, 1);
+  EXPECT_EQ(run_with(without, "bench ploc --most 5000 --runs 2").status, 1);
 }
 
 // The picture is traced twice, for its time and for its kernels; each is traced in submits of its own cut.

@@ -16,15 +16,20 @@ TEST_F(Command, BadScenesAreRefusedWithStatus1) {
                                   "ELF\0\0\0",
                                   7));
   write("index.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
-  write("short.obj", "v 0 0 0\nv 1 0 0\nf 1 2\n");
   fs::create_directory("folder.obj");
   const struct {
     const char *scene, *part;
-  } cases[] = {{"missing.obj", "missing.obj"}, {"folder.obj", "folder.obj"}, {"empty.obj", "empty.obj"},
-               {"binary.obj", "binary.obj"},   {"index.obj", "index.obj:4"}, {"short.obj", "short.obj:3"},
-               {"nonsense", "nonsense"},       {"scatter:0", "scatter:0"},   {"hard:nonsense", "nonsense"},
-               {"hard:nested:5:x", "'x'"}};
+  } cases[] = {{"missing.obj", "missing.obj"}, {"folder.obj", "folder.obj"},  {"empty.obj", "empty.obj"},
+               {"binary.obj", "binary.obj"},   {"index.obj", "index.obj:4"},  {"nonsense", "nonsense"},
+               {"scatter:0", "scatter:0"},     {"hard:nonsense", "nonsense"}, {"hard:nested:5:x", "'x'"}};
   for (const auto& c : cases) expect_refused(std::string("render ") + c.scene + " -o out.png", 1, c.part);
+}
+
+TEST_F(Command, AFaceOfTwoCornersIsLeftOutAndNamed) {
+  write("short.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\nf 1 2 3\n");
+  const Outcome outcome = run("render short.obj --size 64x48 -o out.png");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("short.obj:4"), std::string::npos) << outcome.err;
 }
 
 TEST_F(Command, BadFlagsAreRefusedWithStatus2) {
