@@ -67,7 +67,7 @@ uint short_keys(uint first, uint second) { return short_key(first) | short_key(s
 
 bool lists_any(Walk w) {
   uint nearest = w.list.a & 0xffffu;
-  return nearest != NO_CHILD && nearest <= short_key(uint(w.limit - w.grid.base) | 7u);
+  return nearest != NO_CHILD && nearest <= short_key(uint(w.limit) | 7u);
 }
 
 void push_list(inout Walk w, uint k) {

@@ -13,14 +13,17 @@ namespace coppice::twins {
 
 namespace {
 
+constexpr float range = 0x1p33f, share_of_range = 1 - 0x1p-8f, least = 2;
 constexpr float room_by_reach = 0x1p-19f, room_by_origin = 0x1p-23f, room_by_offset = 0x1p-18f;
+constexpr float flattest = 0x1p-16f;
 constexpr float farthest_reach = 0x1p60f;
 constexpr float most_inverse = 0x1p64f;
-constexpr float share_of_range = 1 - 0x1p-8f;
-constexpr int binades = 32;  // below the range
 
-// The distances of one ray to the planes of wide nodes: t plus an offset, so that those that matter are
-// positive.
+// The distance as far as a list of children keeps it, in 13 bits: eight of the mantissa, and the binade.
+uint kept_bits(float distance) { return std::bit_cast<uint>(distance) >> 15 & 0x1fff; }
+
+// The distances of one ray to the planes of wide nodes: t in units that bring the scene below the range, plus
+// an offset, so that those that matter are positive.
 class Distances {
  public:
   Distances(const TraceRay& ray, const vec3& box_min, const vec3& box_max) : origin_(ray.origin) {
@@ -28,17 +31,16 @@ class Distances {
     for (int axis = 0; axis < 3; ++axis)
       reach[axis] =
           std::max(std::fabs(box_min[axis] - ray.origin[axis]), std::fabs(box_max[axis] - ray.origin[axis]));
-    const float far_end = reach[ray.axis] * 1.25f * std::fabs(ray.stretch);
-    const int exponent = std::min(far_end < FLT_MIN ? FLT_MIN_EXP - 1 : std::ilogb(far_end) + 1, 125);
-    range_ = std::ldexp(1.0f, exponent);
-    const bool may_be_negative = ray.t_min < 0;
-    offset_ = may_be_negative ? 3 * range_ : 0;
-    base_ = may_be_negative ? 2 * range_ : exponent - binades < FLT_MIN_EXP - 1 ? 0 : range_ * 0x1p-32f;
-    const bool meets_all = !(std::max({reach[0], reach[1], reach[2]}) < farthest_reach);
-    first = meets_all ? base_ : std::max(std::clamp(ray.t_min, -range_, range_) + offset_, base_);
+    const float farthest = std::max({reach[0], reach[1], reach[2]});
+    const float far_end = std::max(reach[ray.axis] * 1.25f * std::fabs(ray.stretch), farthest * flattest);
+    const int exponent = far_end < FLT_MIN ? -30 : std::clamp(std::ilogb(far_end) + 1, -30, 125);
+    unit_ = std::ldexp(1.0f, 33 - exponent);
+    offset_ = ray.t_min < 0 ? 3 * range : 0;
+    const bool meets_all = !(farthest < farthest_reach);
+    first = meets_all ? least : std::max(std::clamp(ray.t_min * unit_, -range, range) + offset_, least);
     for (int axis = 0; axis < 3; ++axis) {
-      inverse_[axis] =
-          std::isinf(ray.inverse[axis]) ? std::copysign(most_inverse, ray.inverse[axis]) : ray.inverse[axis];
+      inverse_[axis] = unit_ * (std::isinf(ray.inverse[axis]) ? std::copysign(most_inverse, ray.inverse[axis])
+                                                              : ray.inverse[axis]);
       const float size = std::fabs(inverse_[axis]);
       room_[axis] = size * room_by_reach;
       fixed_[axis] = std::fabs(origin_[axis]) * room_by_origin * size + offset_ * room_by_offset;
@@ -50,12 +52,7 @@ class Distances {
 
   // How far a hit at t is.
   float of_hit(float t) const {
-    return std::max(std::clamp(t, -range_, range_ * share_of_range) + offset_, base_);
-  }
-
-  // The distance as far as a list of children keeps it, in 13 bits: eight of the mantissa, and the binade.
-  uint kept_bits(float distance) const {
-    return (std::bit_cast<uint>(distance) - std::bit_cast<uint>(base_)) >> 15 & 0x1fff;
+    return std::max(std::clamp(t * unit_, -range, range * share_of_range) + offset_, least);
   }
 
   // Where the ray enters a child's box; false if it misses it up to `limit`.
@@ -76,7 +73,7 @@ class Distances {
       const bool backward = inverse_[axis] < 0;
       const std::uint8_t near = bytes[backward ? axis + 3 : axis], far = bytes[backward ? axis : axis + 3];
       enter = std::max(enter, near * scale + (start - (pad + (fixed_[axis] - offset_))));
-      leave = std::min(leave, far * scale + (start + (pad + (fixed_[axis] + (offset_ + 2 * base_)))));
+      leave = std::min(leave, far * scale + (start + (pad + (fixed_[axis] + (offset_ + 2 * least)))));
     }
     return enter <= leave;
   }
@@ -85,7 +82,7 @@ class Distances {
 
  private:
   vec3 origin_;
-  float inverse_[3], room_[3], fixed_[3], range_, offset_, base_;
+  float inverse_[3], room_[3], fixed_[3], unit_, offset_;
 };
 
 struct Visit {
@@ -101,7 +98,7 @@ uint trace(const TraceWideArgs& args, const TraceRay& ray, Hit& hit) {
   for (std::vector<Visit> stack = {{0, 0}}; !stack.empty();) {
     const Visit visit = stack.back();
     stack.pop_back();
-    if (visit.kept > distances.kept_bits(distances.of_hit(hit.t))) continue;
+    if (visit.kept > kept_bits(distances.of_hit(hit.t))) continue;
     if (visit.word >= WIDE_LEAF) {
       const uint triangle = visit.word & ~WIDE_LEAF;
       ray_meets_triangle(ray, args.triangles[triangle], triangle, TRIANGLE_WATERTIGHT, hit);
@@ -119,7 +116,7 @@ uint trace(const TraceWideArgs& args, const TraceRay& ray, Hit& hit) {
       if (node.child[child] == WIDE_EMPTY || !distances.meet(node, child, distances.of_hit(hit.t), enter))
         continue;
       met.push_back({(std::bit_cast<uint>(enter) & ~(WIDE_CHILDREN - 1)) | child,
-                     {distances.kept_bits(enter), node.child[child]}});
+                     {kept_bits(enter), node.child[child]}});
     }
     std::ranges::sort(met, std::greater(), &Met::key);
     for (const Met& child : met) stack.push_back(child.visit);

@@ -31,6 +31,8 @@ bool intersect_box_within(TraceRay ray, vec3 box_min, vec3 box_max, float reach,
 }
 
 bool intersect_box(TraceRay ray, vec3 box_min, vec3 box_max, float leave, inout float enter) {
-  float reach = largest(reach_of(ray.origin, Aabb(box_min, box_max)));
+  precise vec3 to_min = box_min - ray.origin;
+  precise vec3 to_max = box_max - ray.origin;
+  float reach = TRACE_BOX_TEST == BOX_ROBUST ? largest(to_min, to_max) : 0.0;
   return intersect_box_within(ray, box_min, box_max, reach, leave, enter);
 }

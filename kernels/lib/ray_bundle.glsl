@@ -60,7 +60,7 @@ void clip_bundle(float slab_min, float slab_max, float origin_low, float origin_
 float bundle_reach(RayBundle b, vec3 position) {
   precise vec3 from_low = position - b.origin_low;
   precise vec3 from_high = position - b.origin_high;
-  return largest(greater(abs(from_low), abs(from_high)));
+  return largest(from_low, from_high);
 }
 
 // False only if no ray of the bundle meets the box, which is within `reach` of all origins, up to `leave`. `enter` is no

@@ -2,15 +2,15 @@
 
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer WideWordsBuffer { u64vec4 at[]; };
 
-const uint NO_KEY = 0x0fffffffu;
+const uint NO_KEY = 0x7fffffffu;
 
 int plane_distance(uint bytes, uint shift, float scale, float start) {
   precise float distance = float(int((bytes >> shift) & 0xffu)) * scale + start;
   return floatBitsToInt(distance);
 }
 
-// Where the ray enters the box, counted from the base, and, in the three lowest bits, the child; NO_KEY for a box that it
-// misses up to `limit`. The lowest three bytes of `low` and `high` are the box' planes.
+// Where the ray enters the box and, in the three lowest bits, the child; NO_KEY for a box that it misses up to `limit`.
+// The lowest three bytes of `low` and `high` are the box' planes.
 uint child_key(GridRay grid, uint low, uint high, uint child, vec3 scale, vec3 near_start, vec3 far_start, int limit) {
   uint swapped = (low ^ high) & grid.backward;
   uint near = low ^ swapped, far = high ^ swapped;
@@ -18,7 +18,7 @@ uint child_key(GridRay grid, uint low, uint high, uint child, vec3 scale, vec3 n
                   max(plane_distance(near, 16u, scale.z, near_start.z), grid.first));
   int leave = min(min(plane_distance(far, 0u, scale.x, far_start.x), plane_distance(far, 8u, scale.y, far_start.y)),
                   min(plane_distance(far, 16u, scale.z, far_start.z), limit));
-  return enter <= leave ? (uint(enter - grid.base) & ~(WIDE_CHILDREN - 1u)) | child : NO_KEY;
+  return enter <= leave ? (uint(enter) & ~(WIDE_CHILDREN - 1u)) | child : NO_KEY;
 }
 
 void put_in_order(inout uint a, inout uint b) {
@@ -35,12 +35,6 @@ void sort_keys(inout uint key[WIDE_CHILDREN]) {
   [[unroll]] for (uint k = 2u; k < 4u; ++k) put_in_order(key[k], key[k + 2u]);
   [[unroll]] for (uint k = 1u; k < 5u; k += 2u) put_in_order(key[k], key[k + 3u]);
   [[unroll]] for (uint k = 1u; k < 7u; k += 2u) put_in_order(key[k], key[k + 1u]);
-}
-
-// The largest of what is not negative.
-float farthest(vec3 v) {
-  ivec3 bits = floatBitsToInt(v);
-  return intBitsToFloat(max(max(bits.x, bits.y), bits.z));
 }
 
 // Header and planes of a node.
@@ -61,7 +55,8 @@ void find_keys(GridRay grid, NodeWords words, int limit, out uint key[WIDE_CHILD
   precise vec3 scale = cell * grid.inverse;
   precise vec3 to_origin = uintBitsToFloat(uvec3(origin_xy, origin_z.x)) - grid.origin;
   precise vec3 start = to_origin * grid.inverse;
-  precise float reach = farthest(abs(to_origin)) + farthest(cell) * WIDE_NODE_STEPS;
+  precise vec3 size = cell * WIDE_NODE_STEPS;
+  precise float reach = largest(to_origin, to_origin) + largest(size, size);
   precise vec3 pad = grid.room * reach;
   precise vec3 near_start = start - (pad + grid.near_fixed);
   precise vec3 far_start = start + (pad + grid.far_fixed);
