@@ -42,11 +42,9 @@ class Distances {
       inverse_[axis] = unit_ * (std::isinf(ray.inverse[axis]) ? std::copysign(most_inverse, ray.inverse[axis])
                                                               : ray.inverse[axis]);
       const float size = std::fabs(inverse_[axis]);
-      room_[axis] = size * room_by_reach;
-      fixed_[axis] = std::fabs(origin_[axis]) * room_by_origin * size + offset_ * room_by_offset;
-      if (!meets_all) continue;
-      inverse_[axis] = room_[axis] = 0;
-      fixed_[axis] = 0x1p126f;
+      const float room = std::fabs(origin_[axis]) * room_by_origin * size + offset_ * room_by_offset;
+      pad_[axis] = (meets_all ? 0x1p126f : room) - offset_;
+      if (meets_all) inverse_[axis] = 0;
     }
   }
 
@@ -69,11 +67,11 @@ class Distances {
     for (int axis = 0; axis < 3; ++axis) {
       const float scale = cell[axis] * inverse_[axis];
       const float start = (node.origin[axis] - origin_[axis]) * inverse_[axis];
-      const float pad = room_[axis] * reach;
+      const float pad = std::fabs(inverse_[axis]) * (reach * room_by_reach) + pad_[axis];
       const bool backward = inverse_[axis] < 0;
       const std::uint8_t near = bytes[backward ? axis + 3 : axis], far = bytes[backward ? axis : axis + 3];
-      enter = std::max(enter, near * scale + (start - (pad + (fixed_[axis] - offset_))));
-      leave = std::min(leave, far * scale + (start + (pad + (fixed_[axis] + (offset_ + 2 * least)))));
+      enter = std::max(enter, near * scale + (start - pad));
+      leave = std::min(leave, far * scale + (start + (pad + 2 * (offset_ + least))));
     }
     return enter <= leave;
   }
@@ -82,7 +80,7 @@ class Distances {
 
  private:
   vec3 origin_;
-  float inverse_[3], room_[3], fixed_[3], unit_, offset_;
+  float inverse_[3], pad_[3], unit_, offset_;
 };
 
 struct Visit {

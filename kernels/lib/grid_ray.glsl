@@ -5,14 +5,13 @@
 
 struct GridRay {
   vec3 origin;
-  vec3 inverse;     // finite; 0 for a ray that meets every box
-  vec3 room;        // by which slabs are widened, for a corner of the node one unit away
-  vec3 near_fixed;  // to subtract from near distances besides
-  vec3 far_fixed;   // to add to far ones
-  uint backward;    // those of the bytes x, y, z along which the ray goes backward
-  int first;        // distance where the ray begins, as bits
-  float unit;       // distances of a t of 1, a power of two
-  float offset;     // 0, or three ranges
+  vec3 inverse;   // finite; 0 for a ray that meets every box
+  vec3 pad;       // to subtract from near distances, beside what follows from the node
+  float spread;   // how much more than that to add to far ones
+  uint backward;  // those of the bytes x, y, z along which the ray goes backward
+  int first;      // distance where the ray begins, as bits
+  float unit;     // distances of a t of 1, a power of two
+  float offset;   // 0, or three ranges
 };
 
 const float GRID_RANGE = 8589934592.0;  // 2^33, more than any distance within the scene
@@ -48,22 +47,18 @@ void prepare_grid_ray(TraceRay ray, Aabb scene, out GridRay grid) {
   vec3 inverse = vec3(finite_inverse(ray.inverse.x), finite_inverse(ray.inverse.y), finite_inverse(ray.inverse.z));
   precise vec3 scaled = inverse * grid.unit;
   grid.inverse = scaled;
-  precise vec3 room = abs(scaled) * GRID_ROOM;
-  grid.room = room;
-  precise vec3 fixed_room = abs(ray.origin) * GRID_FIXED_ROOM * abs(scaled) + grid.offset * GRID_OFFSET_ROOM;
+  precise vec3 room = abs(ray.origin) * GRID_FIXED_ROOM * abs(scaled) + grid.offset * GRID_OFFSET_ROOM;
   // Past the share of a limit, so that nothing is met where the ray begins behind the scene.
   precise float first = clamp(ray.t_min * grid.unit, -GRID_RANGE, GRID_RANGE) + grid.offset;
   grid.first = floatBitsToInt(max(first, GRID_LEAST));
   if (!(largest(reach) < GRID_FARTHEST)) {
     grid.inverse = vec3(0.0);
-    grid.room = vec3(0.0);
     grid.first = floatBitsToInt(GRID_LEAST);
-    fixed_room = vec3(GRID_MEETS_ALL);
+    room = vec3(GRID_MEETS_ALL);
   }
-  precise vec3 near_fixed = fixed_room - grid.offset;
-  precise vec3 far_fixed = fixed_room + (grid.offset + 2.0 * GRID_LEAST);
-  grid.near_fixed = near_fixed;
-  grid.far_fixed = far_fixed;
+  precise vec3 pad = room - grid.offset;
+  grid.pad = pad;
+  grid.spread = 2.0 * (grid.offset + GRID_LEAST);
   grid.backward = (grid.inverse.x < 0.0 ? 0xffu : 0u) | (grid.inverse.y < 0.0 ? 0xff00u : 0u) |
                   (grid.inverse.z < 0.0 ? 0xff0000u : 0u);
 }

@@ -51,15 +51,16 @@ void find_keys(GridRay grid, NodeWords words, int limit, out uint key[WIDE_CHILD
   u64vec4 low = words.low, high = words.high;
   uvec2 origin_xy = unpackUint2x32(low.x), origin_z = unpackUint2x32(low.y);
   uint e = origin_z.y;
-  vec3 cell = uintBitsToFloat(uvec3(e << 23, e << 15, e << 7) & 0x7f800000u);
+  uvec3 cell_bits = uvec3(e << 23, e << 15, e << 7) & 0x7f800000u;
+  vec3 cell = uintBitsToFloat(cell_bits);
   precise vec3 scale = cell * grid.inverse;
   precise vec3 to_origin = uintBitsToFloat(uvec3(origin_xy, origin_z.x)) - grid.origin;
   precise vec3 start = to_origin * grid.inverse;
-  precise vec3 size = cell * WIDE_NODE_STEPS;
-  precise float reach = largest(to_origin, to_origin) + largest(size, size);
-  precise vec3 pad = grid.room * reach;
-  precise vec3 near_start = start - (pad + grid.near_fixed);
-  precise vec3 far_start = start + (pad + grid.far_fixed);
+  float largest_cell = uintBitsToFloat(max(max(cell_bits.x, cell_bits.y), cell_bits.z));
+  precise float reach = largest(to_origin, to_origin) + largest_cell * WIDE_NODE_STEPS;
+  precise vec3 pad = abs(grid.inverse) * (reach * GRID_ROOM) + grid.pad;
+  precise vec3 near_start = start - pad;
+  precise vec3 far_start = start + (pad + grid.spread);
   uvec2 planes[6] = uvec2[6](unpackUint2x32(low.z), unpackUint2x32(low.w), unpackUint2x32(high.x),
                              unpackUint2x32(high.y), unpackUint2x32(high.z), unpackUint2x32(high.w));
   [[unroll]] for (uint pair = 0u; pair < WIDE_CHILDREN / 2u; ++pair) {
