@@ -88,7 +88,9 @@ int run_render(const Options& options) {
 
   std::optional<CheckedDevice> device;
   const auto device_start = Clock::now();
-  if (options.tracer == "gpu" || find_device_builder(options.builder)) device.emplace(open_device(options));
+  const CommandUse use{find_device_builder(options.builder) != nullptr, options.tracer == "gpu",
+                       static_cast<std::uint32_t>(scene.indices.size())};
+  if (use.builds || use.traces) device.emplace(open_device(options, use));
   const double device_ms = device ? ms_since(device_start) : 0;
   const RenderReport report = options.tracer == "gpu"
                                   ? render_on_device(*device, scene, options)

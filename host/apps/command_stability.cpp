@@ -169,7 +169,7 @@ std::vector<StabilityCase> examine_cases(CheckedDevice& device, std::span<const 
 
 int run_stability(const Options& options) {
   const std::vector<const HardCase*> chosen = chosen_cases(options);
-  CheckedDevice device = open_device(options);
+  CheckedDevice device = open_device(options, {});
   const StabilityOptions stability{options.most_triangles, options.rays_of_a_kind, options.seed};
   const std::vector<StabilityCase> cases = examine_cases(device, chosen, options, stability);
   std::vector<LeakCount> leaks;

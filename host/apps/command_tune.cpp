@@ -78,7 +78,7 @@ Json tune_stage(CheckedDevice& device, const VariantStage& stage, Workload workl
 }  // namespace
 
 int run_tune(const Options& options) {
-  CheckedDevice device = open_device(options);
+  CheckedDevice device = open_device(options, {});
   const DeviceProperties& properties = device.device.properties();
   if (!device.lookback)
     throw DeviceError("without lookback there is one variant of each stage, and nothing to tune");
