@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Installs what is missing (Debian 12), builds everything with warnings as errors and runs all checks, the
+# Installs what is missing (Debian 12), builds everything by g++ and by clang with warnings as errors and runs all checks, the
 # cheap ones first. The first that fails ends it, so what it said stands last; when all pass, that is ctest's summary
-# of the full run on the reference driver.
+# of the full run on the reference driver. Before that run a table says how long each part took.
 #   ./test.sh                    everything
 #   ./test.sh CTEST_ARGUMENT...  one ctest run on the reference driver, for example ./test.sh -R sort
 # COPPICE_DRIVER=auto|private|stock|system chooses the Vulkan driver, see host/setup.sh.
@@ -16,11 +16,25 @@ test_timeout=300 # seconds a test, where CMake sets no other
 reference_only='AMillion|EveryStageOfEveryTree|WideTree.PowersOfTwo|BenchChecksAndTimes|TuneKeeps|TuneWithout'
 reference_only+='|lookback_on_4_threads|AboutSixtyFourTilesOfASort|LikeAGpu'
 
+# timed NAME COMMAND...: notes how long it took.
+parts=()
+timed() {
+  local name=$1 start=$SECONDS
+  shift
+  "$@" || return # also where errexit is off, as before a ||
+  parts+=("$(printf '%6d s  %s' "$((SECONDS - start))" "$name")")
+}
+
 check() {
   local name=$1
   shift
   say "$name (after $SECONDS s)"
-  "$@" || die "FAILED: $name"
+  timed "$name" "$@" || die "FAILED: $name"
+}
+
+say_times() {
+  say "$SECONDS s so far:"
+  printf '%s\n' "${parts[@]}" >&2
 }
 
 format_is_clean() {
@@ -88,18 +102,21 @@ if (($#)); then
 fi
 
 check "format" format_is_clean
-build ci "$build_dir"
-build sanitize "$build_dir/sanitize" host_tests
+timed "building everything" build ci "$build_dir"
+timed "building host tests with sanitizers" build sanitize "$build_dir/sanitize" host_tests
 check "host tests under AddressSanitizer and UndefinedBehaviorSanitizer" host_tests_sanitized
 if command -v clang++ >/dev/null; then
-  build fuzz "$build_dir/fuzz" obj_fuzzer
+  timed "building everything by clang" build clang "$build_dir/clang"
+  timed "building the fuzzer" build fuzz "$build_dir/fuzz" obj_fuzzer
   check "the OBJ reader under libFuzzer" fuzz_obj_reader
 else
-  say "no clang: the OBJ reader is not fuzzed"
+  say "no clang: nothing is compiled by it, and the OBJ reader is not fuzzed"
 fi
 for driver in "${drivers[@]:1}"; do
   check "device tests on $(describe_driver "$driver")" run_ctest_on "$driver" \
     -L device -LE widths -E "$reference_only"
 done
 
+# The table of times comes before ctest's summary, which stands last: ctest says how long it takes by itself.
+say_times
 check "all tests on $(describe_driver "$reference")" run_ctest_on "$reference"

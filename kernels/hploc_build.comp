@@ -31,7 +31,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 16) volatile coherent 
   u64vec4 at[];
 };
 
-// Leaves a node's clusters in memory.
+// Leaves a node's clusters in memory, for arrive() to release.
 void publish(Range node, List its) {
   CoherentNodeWordsBuffer clusters = CoherentNodeWordsBuffer(args.clusters);
   [[dont_unroll]] for (uint i = lane(); i < node.clusters; i += LANES) {
@@ -39,7 +39,6 @@ void publish(Range node, List its) {
     clusters.at[node.first + i] = cluster_words[slot];
     args.cluster_names.at[node.first + i] = name_of(slot, its);
   }
-  memoryBarrierBuffer();
   sync();
 }
 
@@ -48,14 +47,16 @@ uint arrive(Range node, uint split) {
   uint word = (split == node.last ? node.first : node.last) << HPLOC_ARRIVAL_SHIFT | node.clusters;
   uint found = 0u;
   if (lane() == 0u) {
+    // Releases what all lanes published: their sync() came before. A fence by each of them before sync() would release
+    // nothing, as only this lane goes on to an atomic.
+    memoryBarrierBuffer();
     // Partner: the same line of the sibling, in whatever workgroup. What either published is visible to the second.
     found = atomicExchange(args.arrivals.at[split], word);
     memoryBarrierBuffer();
     if (found != 0u) args.arrivals.at[split] = 0u;
   }
   found = subgroupBroadcastFirst(found);
-  memoryBarrierBuffer();
-  sync();
+  sync();  // hands what lane 0 acquired to the others
   return found;
 }
 

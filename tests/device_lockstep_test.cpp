@@ -121,19 +121,10 @@ TEST_F(Lockstep, WholeFrame) {
         plan_trace(layout, build, static_cast<std::uint32_t>(arrays.materials.size()), options);
     LockstepExecutor executor(test_device(), layout);
     upload_frame(executor, build, trace, arrays, make_film(scene, {}, 61, 47, 3));
-    // A division may round otherwise on a GPU; elsewhere every bit is the same.
-    LockstepExecutor::Tolerate tolerate;
-    if (test_device().properties().type != DeviceType::cpu) {
-      tolerate = [](const Difference& difference) {
-        return difference.slot == "hits" || difference.slot == "radiance";
-      };
-    }
-    const auto difference = executor.run(
-        [&](Chain& chain) {
-          append_build(chain, build);
-          append_trace(chain, build, trace);
-        },
-        tolerate);
+    const auto difference = executor.run([&](Chain& chain) {
+      append_build(chain, build);
+      append_trace(chain, build, trace);
+    });
     EXPECT_FALSE(difference) << difference->stage << " " << difference->slot << "[" << difference->index
                              << "]";
     EXPECT_GT(executor.cpu().read(trace.counters)[0].hits.x, 0u);

@@ -37,20 +37,65 @@ void search_too_near(std::vector<Step>& steps) {
   }
 }
 
+using Fault = std::function<void(std::vector<Step>&)>;
+
+DeviceUse builds_by(DeviceBuilder builder, const Variants& variants = {}) {
+  DeviceUse use;
+  use.build.builder = builder;
+  use.build.variants = variants;
+  return use;
+}
+
+DeviceUse traces_by(bool wide, bool packets = false) {
+  DeviceUse use;
+  use.builds = false;
+  use.traces = {test_trace_options(1, 1)};
+  use.traces[0].wide = wide;
+  use.traces[0].packets = packets;
+  return use;
+}
+
+// The line with which a device is refused; empty where it is not.
+std::string refusal(const DeviceUse& use, const Fault& fault, Device& device = test_device()) {
+  try {
+    check_device(device, use, fault);
+    return "";
+  } catch (const DeviceError& error) {
+    return error.what();
+  }
+}
+
+bool says(const std::string& refusal, const std::string& what) {
+  return refusal.find(test_device().properties().name) != std::string::npos &&
+         refusal.find(what + " in the self-check; it is not used") != std::string::npos;
+}
+
 TEST_F(SelfCheck, PassesOnTheTestDevice) {
-  EXPECT_TRUE(check_lookback(test_device(), {}));
-  EXPECT_TRUE(check_lookback(test_device(), default_variants(test_device().properties())));
+  EXPECT_TRUE(check_device(test_device(), {}));
+  EXPECT_TRUE(check_device(test_device(),
+                           builds_by(DeviceBuilder::ploc, default_variants(test_device().properties()))));
+  for (const DeviceBuilder builder : {DeviceBuilder::hploc, DeviceBuilder::lbvh}) {
+    DeviceUse use = builds_by(builder);
+    use.traces = {test_trace_options(1, 1)};
+    use.traces[0].wide = true;
+    EXPECT_TRUE(check_device(test_device(), use));
+  }
+  for (const DeviceUse& use : {traces_by(false), traces_by(true, true), traces_by(true)})
+    EXPECT_TRUE(check_device(test_device(), use));
+  DeviceUse brute_force = traces_by(false);
+  brute_force.traces[0].brute_force = true;
+  EXPECT_TRUE(check_device(test_device(), brute_force));
 }
 
 TEST_F(SelfCheck, DoesWithoutLookbackWhereItGivesAnotherTree) {
-  EXPECT_FALSE(check_lookback(test_device(), {}, [](std::vector<Step>& steps) {
+  EXPECT_FALSE(check_device(test_device(), {}, [](std::vector<Step>& steps) {
     if (uses_lookback(steps)) search_too_near(steps);
   }));
 }
 
 TEST_F(SelfCheck, DoesWithoutLookbackWhereItEndsWithAnError) {
   bool stressed = false;
-  EXPECT_FALSE(check_lookback(test_device(), {}, [&](std::vector<Step>& steps) {
+  EXPECT_FALSE(check_device(test_device(), {}, [&](std::vector<Step>& steps) {
     for (Step& step : steps) {
       if (!is_stage(step, "ploc_merge") || args_of<PlocMergeArgs>(step).lookback == 0) continue;
       step.specialization[0] = step.specialization[1] = 0;
@@ -62,15 +107,39 @@ TEST_F(SelfCheck, DoesWithoutLookbackWhereItEndsWithAnError) {
 }
 
 TEST_F(SelfCheck, RefusesByNameADeviceThatIsWrongEitherWay) {
-  try {
-    check_lookback(test_device(), {}, search_too_near);
-    FAIL() << "not refused";
-  } catch (const DeviceError& error) {
-    const std::string what = error.what();
-    EXPECT_NE(what.find(test_device().properties().name), std::string::npos) << what;
-    EXPECT_NE(what.find("computes a wrong tree in the self-check; it is not used"), std::string::npos)
-        << what;
+  EXPECT_TRUE(says(refusal({}, search_too_near), "computes a wrong tree"));
+}
+
+TEST_F(SelfCheck, RefusesADeviceWhoseSubgroupsDoNotMeet) {
+  const Fault nobody_arrives = [](std::vector<Step>& steps) {
+    for (Step& step : steps) {
+      if (is_stage(step, "hploc_build")) step.groups.x /= 2;  // half of the tiles never come
+    }
+  };
+  EXPECT_TRUE(says(refusal(builds_by(DeviceBuilder::hploc), nobody_arrives), "computes a wrong tree"));
+}
+
+// A tracer that ends too early, and one that does not run.
+TEST_F(SelfCheck, RefusesADeviceByTheTracerThatIsGoingToRun) {
+  const Fault one_turn = [](std::vector<Step>& steps) {
+    for (Step& step : steps) {
+      if (step.stage && std::string_view(step.stage->name).starts_with("trace_"))
+        step.specialization.at(0) = 1;
+    }
+  };
+  const Fault half = [](std::vector<Step>& steps) { steps.back().groups.x /= 2; };
+  for (const DeviceUse& use : {traces_by(false), traces_by(true, true), traces_by(true)}) {
+    EXPECT_TRUE(says(refusal(use, one_turn), "finds wrong hits"));
+    EXPECT_TRUE(says(refusal(use, half), "finds wrong hits"));
   }
+}
+
+// Where hits need be only nearly the same.
+TEST_F(SelfCheck, RefusesAGpuByItsTracer) {
+  Device device({"", false, true});
+  EXPECT_EQ(refusal(traces_by(true, true), {}, device), "");
+  const Fault half = [](std::vector<Step>& steps) { steps.back().groups.x /= 2; };
+  EXPECT_TRUE(says(refusal(traces_by(true, true), half, device), "finds wrong hits"));
 }
 
 }  // namespace

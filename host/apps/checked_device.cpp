@@ -57,7 +57,7 @@ bool CheckedDevice::walks_wide(const Options& options, std::uint32_t triangle_co
   return can && variants.trace != TRACE_BINARY && rays > triangle_count;
 }
 
-CheckedDevice open_device(const Options& options) {
+CheckedDevice open_device(const Options& options, const CommandUse& command) {
   CheckedDevice checked{Device({options.device, options.validate, false, cache_folder()}), true, {}};
   note_slow_driver(checked.device.properties());
   if (!checked.device.has_kept_pipelines() && isatty(STDERR_FILENO)) {
@@ -68,7 +68,13 @@ CheckedDevice open_device(const Options& options) {
                                                 : default_variants(checked.device.properties());
   if (options.variants != "auto" && options.variants != "default")
     set_variants(options.variants, checked.variants);
-  const bool works = check_lookback(checked.device, checked.variants);
+  DeviceUse use{command.builds, checked.build_options(options, options.morton_bits == "60" ? 60 : 30), {}};
+  if (command.traces) {
+    TraceOptions trace = checked.trace_options(options);
+    trace.wide = checked.walks_wide(options, command.triangle_count);
+    use.traces.push_back(trace);
+  }
+  const bool works = check_device(checked.device, use);
   checked.lookback = options.lookback == "auto" ? works : options.lookback == "on";
   return checked;
 }

@@ -24,8 +24,15 @@ struct CheckedDevice {
   bool packets(const Options& options) const;
 };
 
+// What a command is going to do on its device, and does not check by itself.
+struct CommandUse {
+  bool builds = true;
+  bool traces = false;
+  std::uint32_t triangle_count = 0;  // of the scene that it traces
+};
+
 // Throws DeviceError if there is no such device or it fails.
-CheckedDevice open_device(const Options& options);
+CheckedDevice open_device(const Options& options, const CommandUse& command);
 
 // Prints what the validation layers said, if anything; then the exit status is 1, else 0.
 int validation_status(Device& device);

@@ -30,7 +30,7 @@ std::span<const NamedBench> benches() {
 }
 
 int run_bench(const Options& options) {
-  CheckedDevice device = open_device(options);
+  CheckedDevice device = open_device(options, {});
   const DeviceProperties& properties = device.device.properties();
   note_timestamps(device.device);
   std::vector<BenchRow> rows;

@@ -8,7 +8,7 @@ namespace {
 
 BuildReport build_on_device(const Options& options, const SceneArrays& arrays, BuildReport report,
                             int& status) {
-  CheckedDevice device = open_device(options);
+  CheckedDevice device = open_device(options, {});
   Layout layout(device.device.properties().max_block_bytes);
   BuildPlan plan = plan_build(layout, static_cast<std::uint32_t>(arrays.triangles.size()),
                               device.build_options(options, report.morton_bits));

@@ -1,6 +1,5 @@
 #include <cstdio>
 
-#include "analysis/compare.h"
 #include "apps/checked_device.h"
 #include "apps/frame.h"
 #include "apps/measure_build.h"
@@ -14,38 +13,46 @@ namespace coppice {
 
 namespace {
 
+using Count = unsigned long long;
+
 Json to_json(const std::optional<Difference>& difference) {
   if (!difference) return nullptr;
-  return {{"stage", difference->stage},
-          {"slot", difference->slot},
-          {"index", difference->index},
-          {"cpu", difference->cpu},
-          {"gpu", difference->gpu}};
+  return {{"stage", difference->stage}, {"slot", difference->slot}, {"index", difference->index},
+          {"cpu", difference->cpu},     {"gpu", difference->gpu},   {"why", difference->why}};
 }
 
-// A division or a square root may differ by an ulp between a GPU and the host: there the trace is compared by
-// its hits.
-struct HitTolerance {
-  HitDifference worst{};
-  std::uint32_t stages = 0;
-
-  LockstepExecutor::Tolerate judge(const LockstepExecutor& executor, const TracePlan& plan) {
-    return [this, &executor, &plan](const Difference& difference) {
-      if (difference.stage != "trace_closest" && difference.stage != "trace_wide" &&
-          difference.stage != "trace_wide_single" && difference.stage != "trace_brute_force" &&
-          difference.stage != "shade" && difference.stage != "resolve" && difference.stage != "camera_rays") {
-        return false;
-      }
-      ++stages;
-      const HitDifference found =
-          compare_hits(executor.cpu().read(plan.hits), executor.gpu().read(plan.hits));
-      worst.count = std::max(worst.count, found.count);
-      worst.other_triangle = std::max(worst.other_triangle, found.other_triangle);
-      worst.largest_relative_t = std::max(worst.largest_relative_t, found.largest_relative_t);
-      return true;
-    };
+// What a GPU left nearly equal: a line, or an entry, for each stage and slot.
+void print_nearly(std::span<const NearlyListing> listings) {
+  for (const NearlyListing& one : listings) {
+    const NearlyEqual& sum = one.sum;
+    std::printf("%s, %s: %llu of %llu differ, %llu by more than the tolerance (%llu may)", one.stage,
+                one.slot, static_cast<Count>(sum.differing), static_cast<Count>(sum.count),
+                static_cast<Count>(sum.beyond), static_cast<Count>(sum.beyond_allowed));
+    if (sum.tied) {
+      std::printf(", %llu in the triangle at the same distance (%llu may)", static_cast<Count>(sum.tied),
+                  static_cast<Count>(sum.tied_allowed));
+    }
+    std::printf("\n");
   }
-};
+}
+
+void add_nearly(Json& json, std::span<const NearlyListing> listings) {
+  if (listings.empty()) return;
+  NearlyEqual hits;
+  json["nearly"] = Json::array();
+  for (const NearlyListing& one : listings) {
+    json["nearly"].push_back({{"stage", one.stage},
+                              {"slot", one.slot},
+                              {"compared", one.sum.count},
+                              {"differing", one.sum.differing},
+                              {"beyond", one.sum.beyond},
+                              {"beyond_allowed", one.sum.beyond_allowed}});
+    if (one.slot == std::string_view("hits")) hits = one.sum;
+  }
+  json["hits_differing"] = hits.differing;
+  json["hits_on_other_triangle"] = hits.tied;
+  json["largest_relative_t"] = hits.largest_relative_t;
+}
 
 }  // namespace
 
@@ -53,7 +60,8 @@ int run_lockstep(const Options& options) {
   const Scene scene = open_scene_with_room(options, true);
   print_warnings(scene);
   const SceneArrays arrays = scene_arrays(scene);
-  CheckedDevice device = open_device(options);
+  CheckedDevice device =
+      open_device(options, {true, true, static_cast<std::uint32_t>(arrays.triangles.size())});
   Layout layout(device.device.properties().max_block_bytes);
   BuildPlan build = plan_build(layout, static_cast<std::uint32_t>(arrays.triangles.size()),
                                device.build_options(options, morton_bits_for(options, arrays.triangles)));
@@ -67,15 +75,11 @@ int run_lockstep(const Options& options) {
   upload_frame(executor, build, trace, arrays,
                make_film(scene, options.camera, options.width, options.height, options.samples));
 
-  HitTolerance tolerance;
-  const bool exact_trace = device.device.properties().type == DeviceType::cpu;
-  const auto difference = executor.run(
-      [&](Chain& chain) {
-        append_build(chain, build);
-        if (wide) append_wide(chain, build, *wide);
-        append_trace(chain, build, trace);
-      },
-      exact_trace ? LockstepExecutor::Tolerate() : tolerance.judge(executor, trace));
+  const auto difference = executor.run([&](Chain& chain) {
+    append_build(chain, build);
+    if (wide) append_wide(chain, build, *wide);
+    append_trace(chain, build, trace);
+  });
   const BuildState state = executor.cpu().read(build.state)[0];
   const std::string error = describe_error_word(state.error_word);
 
@@ -83,29 +87,20 @@ int run_lockstep(const Options& options) {
     std::printf("%s: %zu triangles, %u rounds of at most %u, %u stages run on %s and by their twins\n",
                 scene.name.c_str(), arrays.triangles.size(), state.round_count, build.rounds_bound,
                 executor.stages_run(), device.device.properties().name.c_str());
-    if (tolerance.stages) {
-      std::printf("trace: %llu of %llu hits differ, %llu in the triangle; relative distance at most %g\n",
-                  static_cast<unsigned long long>(tolerance.worst.count),
-                  static_cast<unsigned long long>(trace.hits.count),
-                  static_cast<unsigned long long>(tolerance.worst.other_triangle),
-                  tolerance.worst.largest_relative_t);
-    }
+    print_nearly(executor.nearly());
     if (difference) {
-      std::printf("first difference: stage %s, slot %s, index %llu\n  cpu %s\n  gpu %s\n",
+      std::printf("first difference: stage %s, slot %s, index %llu\n  cpu %s\n  gpu %s\n%s",
                   difference->stage.c_str(), difference->slot.c_str(),
                   static_cast<unsigned long long>(difference->index), difference->cpu.c_str(),
-                  difference->gpu.c_str());
+                  difference->gpu.c_str(),
+                  difference->why.empty() ? "" : ("  " + difference->why + "\n").c_str());
     } else {
       std::printf("no difference\n");
     }
   }
   Json json = {
       {"stages", executor.stages_run()}, {"equal", !difference}, {"first_difference", to_json(difference)}};
-  if (tolerance.stages) {
-    json["hits_differing"] = tolerance.worst.count;
-    json["hits_on_other_triangle"] = tolerance.worst.other_triangle;
-    json["largest_relative_t"] = tolerance.worst.largest_relative_t;
-  }
+  add_nearly(json, executor.nearly());
   write_json(options.json, json);
   if (!error.empty()) throw DeviceError(error);
   const int validation = validation_status(device.device);

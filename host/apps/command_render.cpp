@@ -98,7 +98,9 @@ int run_render(const Options& options) {
 
   std::optional<CheckedDevice> device;
   const auto device_start = Clock::now();
-  if (on_device) device.emplace(open_device(options));
+  const CommandUse use{find_device_builder(options.builder) != nullptr, options.tracer == "gpu",
+                       static_cast<std::uint32_t>(scene.indices.size())};
+  if (on_device) device.emplace(open_device(options, use));
   const double device_ms = device ? ms_since(device_start) : 0;
   const bool split = options.kernels || !options.json.empty() || !options.trace_events.empty();
   const RenderReport report = options.tracer == "gpu"

@@ -214,7 +214,7 @@ ExaminedCases examine_cases(CheckedDevice& device, std::span<const HardCase* con
 
 int run_stability(const Options& options) {
   const std::vector<const HardCase*> chosen = chosen_cases(options);
-  CheckedDevice device = open_device(options);
+  CheckedDevice device = open_device(options, {});
   const StabilityOptions stability{options.most_triangles, options.rays_of_a_kind, options.seed};
   const ExaminedCases cases = examine_cases(device, chosen, options, stability);
   std::vector<LeakCount> leaks;

@@ -118,7 +118,7 @@ std::filesystem::path checked_table_file(const Device& device) {
 }  // namespace
 
 int run_tune(const Options& options) {
-  CheckedDevice device = open_device(options);
+  CheckedDevice device = open_device(options, {});
   const DeviceProperties& properties = device.device.properties();
   const std::filesystem::path file = checked_table_file(device.device);
   if (talks(options)) {

@@ -195,8 +195,10 @@ Recorder::Times Recorder::Commands::submit_and_wait(double limit_seconds) {
 
   Times times{wall.count(), wall.count(), {}, {}};
   if (!*c.queries) return times;
-  const auto [result, ticks] = c.queries.getResults<std::uint64_t>(0, c.query_count, c.query_count * 8, 8,
-                                                                   vk::QueryResultFlagBits::e64);
+  const std::vector<std::uint64_t> ticks =
+      c.queries
+          .getResults<std::uint64_t>(0, c.query_count, c.query_count * 8, 8, vk::QueryResultFlagBits::e64)
+          .second;
   const auto since = [&](std::uint32_t from, std::uint32_t to) {
     return static_cast<double>((ticks[to] - ticks[from]) & c.context.timestamp_mask) *
            c.context.properties.timestamp_period_ns * 1e-6;

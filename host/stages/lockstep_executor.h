@@ -6,22 +6,32 @@
 
 #include "stages/cpu_executor.h"
 #include "stages/gpu_executor.h"
+#include "stages/nearly.h"
 
 namespace coppice {
 
 struct Difference {
-  std::string stage;
-  std::string slot;      // or the guard behind it
-  std::uint64_t index;   // of the element; at least the slot's count in its guard
+  std::string stage;     // or "clear", or "upload" before the first step
+  std::string slot;      // or what lies behind it, up to the next
+  std::uint64_t index;   // of the element; at least the slot's count behind it
   std::string cpu, gpu;  // the element's words in hexadecimal
+  std::string why;       // where more differ than the stage's tolerance allows; else empty
 };
 
-// Runs a chain on a device and by its twins, on the same input, one stage at a time, and compares all memory
-// of both bit for bit after every stage, guards included.
+// What a stage left nearly equal in a slot, over all its runs.
+struct NearlyListing {
+  const char* stage;
+  const char* slot;
+  NearlyEqual sum;  // counts and limits added up
+};
+
+// Runs a chain on a device and by its twins, on the same input, one step at a time, and compares all memory
+// of both after every step bit for bit: slots, guards and what lies between. Where the device is no CPU,
+// slots that a stage declares as nearly equal are held to their tolerance (stages/nearly.h); then the
+// device's bits are taken over, so that no stage is blamed for what came before it.
 class LockstepExecutor {
  public:
-  LockstepExecutor(Device& device, const Layout& layout)
-      : layout_(layout), gpu_(device, layout), cpu_(layout) {}
+  LockstepExecutor(Device& device, const Layout& layout);
 
   template <class T>
   void upload(const Slot<T>& slot, std::span<const T> values) {
@@ -29,25 +39,29 @@ class LockstepExecutor {
     cpu_.upload(slot, values);
   }
 
-  // Stages that compare only nearly (shading on a GPU) are judged by `tolerate`, which returns true to go on:
-  // then the device's bits are taken over.
-  using Tolerate = std::function<bool(const Difference&)>;
-
   // Appends to both chains alike; returns the first difference, if any.
-  std::optional<Difference> run(const std::function<void(Chain&)>& append, const Tolerate& tolerate = {});
+  std::optional<Difference> run(const std::function<void(Chain&)>& append);
 
   std::uint32_t stages_run() const { return stages_run_; }
+  // Empty on a CPU device, where every bit is compared.
+  std::span<const NearlyListing> nearly() const { return nearly_; }
+  const Layout& layout() const { return layout_; }
   const CpuExecutor& cpu() const { return cpu_; }
   const GpuExecutor& gpu() const { return gpu_; }
 
  private:
-  std::optional<Difference> compare(const char* stage);
-  void take_over_device_memory();
+  std::optional<Difference> compare(const StageDeclaration* stage, const char* name);
+  std::optional<Difference> compare_bits(const char* name, const SlotListing& slot, std::uint64_t first,
+                                         std::uint64_t end);
+  std::optional<Difference> compare_slot(const StageDeclaration& stage, const NearlySlot& nearly,
+                                         const SlotListing& slot);
 
   Layout layout_;
   GpuExecutor gpu_;
   CpuExecutor cpu_;
+  bool every_bit_;
   std::uint32_t stages_run_ = 0;
+  std::vector<NearlyListing> nearly_;
 };
 
 }  // namespace coppice

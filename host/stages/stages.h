@@ -11,46 +11,56 @@
 #include "interface/wide.h"
 #include "stages/stage.h"
 
-// THE TABLE. A line here, a kernel kernels/<stem>.comp and a twin host/twins/<stem>.cpp make a stage.
-#define COPPICE_STAGES(STAGE)                   \
-  STAGE(primitive_bounds, PrimitiveBoundsArgs)  \
-  STAGE(morton_codes, MortonCodesArgs)          \
-  STAGE(sort_histogram, SortHistogramArgs)      \
-  STAGE(sort_digit_scan, SortDigitScanArgs)     \
-  STAGE(sort_pass, SortPassArgs)                \
-  STAGE(sort_tile_counts, SortScatterArgs)      \
-  STAGE(sort_tile_scan, SortTileScanArgs)       \
-  STAGE(sort_scatter, SortScatterArgs)          \
-  STAGE(ploc_leaves, PlocLeavesArgs)            \
-  STAGE(ploc_tile_counts, PlocMergeArgs)        \
-  STAGE(ploc_tile_scan, PlocTileScanArgs)       \
-  STAGE(ploc_merge, PlocMergeArgs)              \
-  STAGE(ploc_finish, PlocFinishArgs)            \
-  STAGE(hploc_build, HplocBuildArgs)            \
-  STAGE(wide_root, WideCollapseArgs)            \
-  STAGE(wide_collapse, WideCollapseArgs)        \
-  STAGE(wide_sizes, WideSizesArgs)              \
-  STAGE(wide_quantise, WideQuantiseArgs)        \
-  STAGE(camera_rays, CameraRaysArgs)            \
-  STAGE(trace_closest, TraceClosestArgs)        \
-  STAGE(trace_wide, TraceWideArgs)              \
-  STAGE(trace_wide_single, TraceWideArgs)       \
-  STAGE(trace_brute_force, TraceBruteForceArgs) \
-  STAGE(bounce_rays, BounceRaysArgs)            \
-  STAGE(shade, ShadeArgs)                       \
-  STAGE(resolve, ResolveArgs)                   \
-  STAGE(copy_words, CopyWordsArgs)              \
-  STAGE(scan_tile_sums, ScanTileSumsArgs)       \
-  STAGE(prefix_scan, PrefixScanArgs)
+// THE TABLE. A line here, a kernel kernels/<stem>.comp and a twin host/twins/<stem>.cpp make a stage. The
+// third word says what of its result only nearly equals the twin's on a GPU, see below.
+#define COPPICE_STAGES(STAGE)                                \
+  STAGE(primitive_bounds, PrimitiveBoundsArgs, exactly)      \
+  STAGE(morton_codes, MortonCodesArgs, exactly)              \
+  STAGE(sort_histogram, SortHistogramArgs, exactly)          \
+  STAGE(sort_digit_scan, SortDigitScanArgs, exactly)         \
+  STAGE(sort_pass, SortPassArgs, exactly)                    \
+  STAGE(sort_tile_counts, SortScatterArgs, exactly)          \
+  STAGE(sort_tile_scan, SortTileScanArgs, exactly)           \
+  STAGE(sort_scatter, SortScatterArgs, exactly)              \
+  STAGE(ploc_leaves, PlocLeavesArgs, exactly)                \
+  STAGE(ploc_tile_counts, PlocMergeArgs, exactly)            \
+  STAGE(ploc_tile_scan, PlocTileScanArgs, exactly)           \
+  STAGE(ploc_merge, PlocMergeArgs, exactly)                  \
+  STAGE(ploc_finish, PlocFinishArgs, exactly)                \
+  STAGE(hploc_build, HplocBuildArgs, exactly)                \
+  STAGE(wide_root, WideCollapseArgs, exactly)                \
+  STAGE(wide_collapse, WideCollapseArgs, exactly)            \
+  STAGE(wide_sizes, WideSizesArgs, exactly)                  \
+  STAGE(wide_quantise, WideQuantiseArgs, exactly)            \
+  STAGE(camera_rays, CameraRaysArgs, nearly_rays)            \
+  STAGE(trace_closest, TraceClosestArgs, nearly_hits)        \
+  STAGE(trace_wide, TraceWideArgs, nearly_hits)              \
+  STAGE(trace_wide_single, TraceWideArgs, nearly_hits)       \
+  STAGE(trace_brute_force, TraceBruteForceArgs, nearly_hits) \
+  STAGE(bounce_rays, BounceRaysArgs, nearly_bounced)         \
+  STAGE(shade, ShadeArgs, nearly_radiance)                   \
+  STAGE(resolve, ResolveArgs, nearly_image)                  \
+  STAGE(copy_words, CopyWordsArgs, exactly)                  \
+  STAGE(scan_tile_sums, ScanTileSumsArgs, exactly)           \
+  STAGE(prefix_scan, PrefixScanArgs, exactly)
 
 namespace coppice {
 
-#define COPPICE_DECLARE_STAGE(stem, Args) \
-  namespace twins {                       \
-  void stem(const Args& args);            \
-  }                                       \
-  namespace stages {                      \
-  extern const Stage<Args> stem;          \
+namespace stages {
+inline constexpr std::span<const NearlySlot> exactly;
+inline constexpr NearlySlot nearly_rays[] = {{"rays", Nearly::rays}};
+inline constexpr NearlySlot nearly_hits[] = {{"hits", Nearly::hits}, {"counters", Nearly::counters}};
+inline constexpr NearlySlot nearly_bounced[] = {{"bounced_rays", Nearly::rays}};
+inline constexpr NearlySlot nearly_radiance[] = {{"radiance", Nearly::radiance}};
+inline constexpr NearlySlot nearly_image[] = {{"image", Nearly::image}};
+}  // namespace stages
+
+#define COPPICE_DECLARE_STAGE(stem, Args, nearly) \
+  namespace twins {                               \
+  void stem(const Args& args);                    \
+  }                                               \
+  namespace stages {                              \
+  extern const Stage<Args> stem;                  \
   }
 COPPICE_STAGES(COPPICE_DECLARE_STAGE)
 #undef COPPICE_DECLARE_STAGE

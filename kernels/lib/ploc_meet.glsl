@@ -4,6 +4,7 @@
 #include "lib/subgroup.glsl"
 
 const uint BLOCKS_AHEAD = (RADIUS + LANES - 1u) / LANES;  // that a cluster may be nearest to
+const uint BLOCKS_AT_ONCE = BLOCKS_AHEAD + 1u;
 
 // What is known of the clusters of one block.
 struct Block {
@@ -13,7 +14,7 @@ struct Block {
 
 // In a row; the first one's clusters are looked at.
 struct Blocks {
-  Block at[BLOCKS_AHEAD + 1u];
+  Block at[BLOCKS_AT_ONCE];
 };
 
 void drop_first(inout Blocks blocks) {
@@ -37,7 +38,7 @@ void take_nearer(inout Nearest nearest, bool met, float area, uint gap) {
 
 // The first block meets itself and those behind it. Returns the index of the nearest neighbour of its cluster i.
 uint meet_blocks(uint i, inout Blocks blocks) {
-  Nearest right = Nearest(NO_AREA, 0u), left[BLOCKS_AHEAD + 1u];
+  Nearest right = Nearest(NO_AREA, 0u), left[BLOCKS_AT_ONCE];
   [[unroll]] for (uint k = 0u; k <= BLOCKS_AHEAD; ++k) left[k] = right;
   [[unroll]] for (uint k = 0u; k < BLOCKS_AHEAD; ++k) {
     [[unroll]] for (uint step = 1u; step <= LANES; ++step) {

@@ -19,8 +19,10 @@ Block load_block(uint i, uint cluster_count, Normalisation normalisation) {
 }
 
 // How far in the list the nearest neighbours are, of a block and those about it.
+const uint CHOICE_BLOCKS = 2u * BLOCKS_AHEAD + 1u;
+
 struct Choices {
-  int blocks[2u * BLOCKS_AHEAD + 1u];
+  int blocks[CHOICE_BLOCKS];
 };
 
 // That of the cluster `to` places behind the first.
