@@ -234,7 +234,8 @@ TEST_F(PlantedFaultsLikeAGpu, NoToleranceReachesBeyondItsSlot) {
   }
 }
 
-// One ray of 7 goes through what it should hit; all of them are a few roundings off; and so on.
+// One ray of 7 goes through what it should hit; all hit another triangle, or farther away; all are some
+// roundings off.
 TEST_F(PlantedFaultsLikeAGpu, HitsAreComparedAsHits) {
   const Damage lost = [](std::span<std::uint32_t> words, const std::vector<bool>& changed) {
     for (std::size_t hit = 0; hit < width * height; hit += 7) {
@@ -242,7 +243,7 @@ TEST_F(PlantedFaultsLikeAGpu, HitsAreComparedAsHits) {
     }
   };
   const Damage other = [](std::span<std::uint32_t> words, const std::vector<bool>& changed) {
-    for (std::size_t hit = 0; hit < width * height; hit += 7) words[4 * hit + 1] ^= changed[4 * hit + 1];
+    for (std::size_t hit = 0; hit < width * height; ++hit) words[4 * hit + 1] ^= changed[4 * hit + 1];
   };
   const Damage farther = [](std::span<std::uint32_t> words, const std::vector<bool>& changed) {
     for (std::size_t hit = 0; hit < width * height; ++hit) words[4 * hit] += changed[4 * hit + 1] ? 1024 : 0;
@@ -255,7 +256,10 @@ TEST_F(PlantedFaultsLikeAGpu, HitsAreComparedAsHits) {
   for (std::size_t chain = 0; chain < std::size(tracers); ++chain) {
     for (const Damage damage : {lost, other, farther}) {
       const Found found = run_with_fault(like_a_gpu(), chain, *tracers[chain], damage, "hits");
-      ASSERT_TRUE(found.difference) << tracers[chain]->name;
+      ASSERT_TRUE(found.difference) << tracers[chain]->name
+                                    << (damage == lost    ? ", lost"
+                                        : damage == other ? ", other"
+                                                          : ", farther");
       EXPECT_EQ(found.difference->stage, tracers[chain]->name);
       EXPECT_EQ(found.difference->slot, "hits");
       EXPECT_NE(found.difference->why, "");
@@ -266,7 +270,7 @@ TEST_F(PlantedFaultsLikeAGpu, HitsAreComparedAsHits) {
     const auto hits = std::ranges::find_if(
         found.nearly, [](const NearlyListing& one) { return one.slot == std::string_view("hits"); });
     ASSERT_NE(hits, found.nearly.end());
-    EXPECT_GT(hits->sum.differing, 100u);
+    EXPECT_GT(hits->sum.differing, 50u);
     EXPECT_EQ(hits->sum.beyond, 0u);
   }
 }
