@@ -29,11 +29,12 @@ struct Frame {
   bool lookback;
   Tracer tracer;
 };
-constexpr Frame frames[] = {{1500, DeviceBuilder::ploc, true, Tracer::binary},
+constexpr Frame frames[] = {{1000, DeviceBuilder::ploc, true, Tracer::binary},
+                            {1000, DeviceBuilder::hploc, true, Tracer::packets},
+                            {1000, DeviceBuilder::hploc, true, Tracer::single},
+                            {300, DeviceBuilder::ploc, true, Tracer::brute_force},
                             {SORT_SCAN_TILE + 100, DeviceBuilder::ploc, false,
-                             Tracer::packets},  // one tile alone sorts without a scan
-                            {1500, DeviceBuilder::hploc, true, Tracer::single},
-                            {300, DeviceBuilder::ploc, true, Tracer::brute_force}};
+                             Tracer::binary}};  // one tile alone sorts without a scan
 constexpr std::size_t scan_and_copy = std::size(frames), chain_count = scan_and_copy + 1;
 
 using Spoil = std::function<void(std::vector<Step>&, const LockstepExecutor&)>;
