@@ -68,24 +68,25 @@ install_missing() {
 
 # --- building ---------------------------------------------------------------------------------------------
 
-# Ninja's counter on one line of a terminal; nothing in a pipe.
+# show_progress [WORDS]: Ninja's counter on one line of a terminal; nothing in a pipe. WORDS are said at the first step
+# that builds something, and not where Ninja only looks for changes (which `ninja -n` cannot tell: files found by pattern
+# count as changed there).
 show_progress() {
-  local line
-  if [[ ! -t 2 ]]; then
-    cat >/dev/null
-    return
-  fi
+  local line words=${1-}
   while IFS= read -r line; do
-    [[ $line =~ ^(\[[0-9]+/[0-9]+\]) ]] && printf '\r%s ' "${BASH_REMATCH[1]}" >&2
+    [[ $line =~ ^(\[[0-9]+/[0-9]+\])' '(.*) && ${BASH_REMATCH[2]} != Re-* ]] || continue
+    [[ -z $words ]] || say "$words"
+    words=
+    [[ ! -t 2 ]] || printf '\r%s ' "${BASH_REMATCH[1]}" >&2
   done
-  printf '\r\e[K' >&2
+  [[ ! -t 2 ]] || printf '\r\e[K' >&2
 }
 
-# logged LOG COMMAND...: appends to LOG, and shows its end only if the command fails.
+# logged LOG WORDS COMMAND...: appends to LOG, and shows its end only if the command fails. WORDS as for show_progress.
 logged() {
-  local log=$1
-  shift
-  if ! "$@" </dev/null 2>&1 | tee -a "$log" | show_progress; then
+  local log=$1 words=$2
+  shift 2
+  if ! "$@" </dev/null 2>&1 | tee -a "$log" | show_progress "$words"; then
     tail -n 60 "$log" >&2
     die "failed: $* (log: $log)"
   fi
@@ -102,13 +103,11 @@ build() {
     : >"$log"
     if ! configured "$preset" "$folder"; then
       say "configuring ($preset)"
-      logged "$log" cmake --preset "$preset"
+      logged "$log" "" cmake --preset "$preset"
       touch "$folder/configured-$preset"
     fi
-    if [[ $(ninja -C "$folder" -n "$@" 2>/dev/null | tail -n 1) != *"no work to do"* ]]; then
-      say "building ($preset); the first time takes minutes"
-      logged "$log" cmake --build "$folder" --parallel "$(nproc)" ${1+--target "$@"}
-    fi
+    logged "$log" "building ($preset); the first time takes minutes" \
+      cmake --build "$folder" --parallel "$(nproc)" ${1+--target "$@"}
   ) 9>"$folder/.lock"
 }
 

@@ -29,11 +29,12 @@ struct Frame {
   bool lookback;
   Tracer tracer;
 };
-constexpr Frame frames[] = {{1500, DeviceBuilder::ploc, true, Tracer::binary},
+constexpr Frame frames[] = {{1000, DeviceBuilder::ploc, true, Tracer::binary},
+                            {1000, DeviceBuilder::hploc, true, Tracer::packets},
+                            {1000, DeviceBuilder::hploc, true, Tracer::single},
+                            {300, DeviceBuilder::ploc, true, Tracer::brute_force},
                             {SORT_SCAN_TILE + 100, DeviceBuilder::ploc, false,
-                             Tracer::packets},  // one tile alone sorts without a scan
-                            {1500, DeviceBuilder::hploc, true, Tracer::single},
-                            {300, DeviceBuilder::ploc, true, Tracer::brute_force}};
+                             Tracer::binary}};  // one tile alone sorts without a scan
 constexpr std::size_t scan_and_copy = std::size(frames), chain_count = scan_and_copy + 1;
 
 using Spoil = std::function<void(std::vector<Step>&, const LockstepExecutor&)>;
@@ -234,7 +235,8 @@ TEST_F(PlantedFaultsLikeAGpu, NoToleranceReachesBeyondItsSlot) {
   }
 }
 
-// One ray of 7 goes through what it should hit; all of them are a few roundings off; and so on.
+// One ray of 7 goes through what it should hit; all hit another triangle, or farther away; all are some
+// roundings off.
 TEST_F(PlantedFaultsLikeAGpu, HitsAreComparedAsHits) {
   const Damage lost = [](std::span<std::uint32_t> words, const std::vector<bool>& changed) {
     for (std::size_t hit = 0; hit < width * height; hit += 7) {
@@ -242,7 +244,7 @@ TEST_F(PlantedFaultsLikeAGpu, HitsAreComparedAsHits) {
     }
   };
   const Damage other = [](std::span<std::uint32_t> words, const std::vector<bool>& changed) {
-    for (std::size_t hit = 0; hit < width * height; hit += 7) words[4 * hit + 1] ^= changed[4 * hit + 1];
+    for (std::size_t hit = 0; hit < width * height; ++hit) words[4 * hit + 1] ^= changed[4 * hit + 1];
   };
   const Damage farther = [](std::span<std::uint32_t> words, const std::vector<bool>& changed) {
     for (std::size_t hit = 0; hit < width * height; ++hit) words[4 * hit] += changed[4 * hit + 1] ? 1024 : 0;
@@ -255,7 +257,10 @@ TEST_F(PlantedFaultsLikeAGpu, HitsAreComparedAsHits) {
   for (std::size_t chain = 0; chain < std::size(tracers); ++chain) {
     for (const Damage damage : {lost, other, farther}) {
       const Found found = run_with_fault(like_a_gpu(), chain, *tracers[chain], damage, "hits");
-      ASSERT_TRUE(found.difference) << tracers[chain]->name;
+      ASSERT_TRUE(found.difference) << tracers[chain]->name
+                                    << (damage == lost    ? ", lost"
+                                        : damage == other ? ", other"
+                                                          : ", farther");
       EXPECT_EQ(found.difference->stage, tracers[chain]->name);
       EXPECT_EQ(found.difference->slot, "hits");
       EXPECT_NE(found.difference->why, "");
@@ -266,7 +271,7 @@ TEST_F(PlantedFaultsLikeAGpu, HitsAreComparedAsHits) {
     const auto hits = std::ranges::find_if(
         found.nearly, [](const NearlyListing& one) { return one.slot == std::string_view("hits"); });
     ASSERT_NE(hits, found.nearly.end());
-    EXPECT_GT(hits->sum.differing, 100u);
+    EXPECT_GT(hits->sum.differing, 50u);
     EXPECT_EQ(hits->sum.beyond, 0u);
   }
 }
