@@ -41,9 +41,9 @@ const float WIDE_NODE_STEPS = 512.0;  // no node has a longer extent, in its lon
 const float WIDE_HEIGHT_1_WEIGHT = 16.0;
 const float WIDE_HEIGHT_2_WEIGHT = 4.0;
 
-// A child of a smaller part of its node's area is too small for the node's grid, which would make its own children as
-// large as a step. It is opened only while there are fewer children than WIDE_LEAST_CHILDREN, or if it is no higher
-// than WIDE_LOW_HEIGHT; else it remains a wide node with a grid of its own.
+// A child of a smaller part of its node's area is too small for the node's grid, which would make its own
+// children as large as a step. It is opened only while there are fewer children than WIDE_LEAST_CHILDREN, or
+// if it is no higher than WIDE_LOW_HEIGHT; else it remains a wide node with a grid of its own.
 const float WIDE_SMALL_PARTS = 1024.0;  // to one
 const uint WIDE_LEAST_CHILDREN = 3;
 const uint WIDE_LOW_HEIGHT = 2;
