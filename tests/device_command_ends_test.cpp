@@ -77,6 +77,18 @@ TEST_F(CommandEnds, WithoutMemoryForTheDeviceItSaysHowMuchItWanted) {
   }
 }
 
+// Drivers crash or hang where they run out of address space while they load.
+TEST_F(CommandEnds, WithoutMemoryForTheDriverItSaysHowMuchItWanted) {
+  for (const std::uint64_t kilobytes : {100000, 200000, 400000, 500000, 600000, 650000}) {
+    for (const char* arguments : {"build terrain:500 --runs 1", "devices"}) {
+      const Outcome outcome = run_in(kilobytes, arguments);
+      EXPECT_EQ(outcome.status, 1) << kilobytes << " " << arguments;
+      EXPECT_EQ(std::ranges::count(outcome.err, '\n'), 1) << outcome.err;
+      EXPECT_NE(outcome.err.find(" bytes"), std::string::npos) << outcome.err;
+    }
+  }
+}
+
 TEST_F(CommandEnds, WithoutALoaderItSaysSoInOneLine) {
   fs::create_directory("nothing");
   for (const char* name : {"nothing/libvulkan.so", "nothing/libvulkan.so.1"}) write(name, "");

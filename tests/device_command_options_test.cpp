@@ -58,6 +58,7 @@ TEST_F(Command, OptionsThatWouldDoNothingAreRefused) {
       {"bench scan --variants default", "--variants"},
       {"bench build --size 8x8", "--size"},
       {"bench sort --camera 0,0,0,1,1,1", "--camera"},
+      {"bench sort --up z", "--up"},
       {"bench trace --most 1000", "--most"},
   };
   for (const auto& c : cases) {

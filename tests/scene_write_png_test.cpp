@@ -89,6 +89,22 @@ TEST_F(WritePng, WritesThroughALink) {
   EXPECT_TRUE(content(folder_ / "a.png").starts_with("\x89PNG"));
 }
 
+TEST_F(WritePng, WritesThroughALinkToWhatIsNotThereYet) {
+  std::filesystem::create_symlink("a.png", folder_ / "link.png");
+  std::filesystem::create_symlink("link.png", folder_ / "second.png");
+  write_png(folder_ / "second.png", 1, 1, std::vector<std::uint32_t>(1));
+  EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "link.png"));
+  EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "second.png"));
+  EXPECT_TRUE(content(folder_ / "a.png").starts_with("\x89PNG"));
+  EXPECT_EQ(file_count(), 3u);
+}
+
+TEST_F(WritePng, ALinkToItselfIsAnError) {
+  std::filesystem::create_symlink("link.png", folder_ / "link.png");
+  EXPECT_NE(error_for(folder_ / "link.png"), "");
+  EXPECT_EQ(file_count(), 1u);
+}
+
 TEST_F(WritePng, AMissingFolderIsAnError) {
   const auto path = folder_ / "none" / "a.png";
   EXPECT_EQ(error_for(path), path.string() + ": cannot write: no such directory");

@@ -122,13 +122,17 @@ void bench_trees(CheckedDevice& device, const Options& options, const Scene& sce
 }  // namespace
 
 void bench_trace(CheckedDevice& device, const Options& options, const AddRow& add) {
-  check_room(options.scene, options, &device.device);
-  const Scene scene = open_scene(options.scene, options.up);
   Options one = options;
-  for (const std::string& builder :
-       options.builders.empty() ? std::vector{options.builder} : options.builders) {
-    one.builder = builder;
-    bench_trees(device, one, scene, add);
+  for (const std::string& name :
+       options.scenes.empty() ? std::vector<std::string>{"grove", "hard:detail-on-ground"} : options.scenes) {
+    one.scene = name;
+    check_room(name, one, &device.device);
+    const Scene scene = open_scene(name, options.up);
+    for (const std::string& builder :
+         options.builders.empty() ? std::vector{options.builder} : options.builders) {
+      one.builder = builder;
+      bench_trees(device, one, scene, add);
+    }
   }
 }
 

@@ -109,7 +109,8 @@ void add_bench(CLI::App& command, Options& options) {
   std::vector<std::string> names;
   for (const NamedBench& bench : benches()) names.emplace_back(bench.name);
   command.add_option("WHAT", options.bench)->required()->check(CLI::IsMember(names));
-  command.add_option("SCENE", options.scene, "of the trace")->capture_default_str();
+  command.add_option("SCENE", options.scenes, "of the trace; default: grove and hard:detail-on-ground")
+      ->expected(1);
   command.add_option("--most", options.most, "words, keys or triangles of the largest size")
       ->check(CLI::Range(4u, 1u << 26))
       ->capture_default_str();

@@ -66,6 +66,7 @@ constexpr Rule rules[] = {
     {"bench", "SCENE", traces, "bench trace"},
     {"bench", "--size", traces, "bench trace"},
     {"bench", "--camera", traces, "bench trace"},
+    {"bench", "--up", traces, "bench trace"},
     {"bench", "--builder", has_builders, "bench build or trace"},
     {"bench", "--radius", has_trees, "bench ploc, build or trace"},
     {"bench", "--morton-bits", has_trees, "bench ploc, build or trace"},

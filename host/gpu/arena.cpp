@@ -1,9 +1,5 @@
 #include "gpu/arena.h"
 
-#if __has_include(<sys/mman.h>)
-#include <sys/mman.h>
-#endif
-
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -11,6 +7,7 @@
 #include <new>
 #include <numeric>
 
+#include "gpu/address_space.h"
 #include "gpu/arena_blocks.h"
 
 namespace coppice {
@@ -18,6 +15,7 @@ namespace coppice {
 namespace {
 
 constexpr std::uint64_t staging_bytes = std::uint64_t{16} << 20;
+constexpr std::uint64_t reserve_bytes = std::uint64_t{256} << 20;  // for the driver's kernels
 
 [[noreturn]] void fail_for_memory(const char* whose, std::uint64_t bytes) {
   throw DeviceError(std::string("out of memory: the ") + whose + " has no " + std::to_string(bytes) +
@@ -61,22 +59,6 @@ Buffer make_buffer(VulkanContext& context, std::uint64_t bytes, vk::BufferUsageF
   return result;
 }
 
-// Drivers of CPU devices compile kernels in this process, and some crash where they get no memory for it:
-// better to say so before.
-void check_reserve(std::uint64_t block_bytes) {
-#if __has_include(<sys/mman.h>)
-  constexpr std::uint64_t reserve_bytes = std::uint64_t{256} << 20;
-  void* const reserve =
-      mmap(nullptr, reserve_bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-  if (reserve == MAP_FAILED) {
-    throw DeviceError("out of memory: beside " + std::to_string(block_bytes) +
-                      " bytes for the device the host's address space has no " +
-                      std::to_string(reserve_bytes) + " bytes left for its driver");
-  }
-  munmap(reserve, reserve_bytes);
-#endif
-}
-
 void check_range(const Buffer& block, std::uint64_t offset, std::uint64_t bytes, const char* copy) {
   if (offset <= block.bytes && bytes <= block.bytes - offset) return;
   throw DeviceError(std::string(copy) + " of " + std::to_string(bytes) + " bytes at " +
@@ -109,7 +91,10 @@ Arena::Arena(Device& device, const std::vector<std::uint64_t>& block_bytes)
     if (shared) std::memset(blocks_->list.back().mapped, 0, bytes);
   }
   if (context.properties.type == DeviceType::cpu)
-    check_reserve(std::accumulate(block_bytes.begin(), block_bytes.end(), std::uint64_t{0}));
+    check_address_space(reserve_bytes, "beside " +
+                                           std::to_string(std::accumulate(
+                                               block_bytes.begin(), block_bytes.end(), std::uint64_t{0})) +
+                                           " bytes for the device ");
   if (shared) return;
   blocks_->staging = make_buffer(context, staging_bytes, Usage::eTransferSrc | Usage::eTransferDst, host);
   run_commands(context, [&](const vk::raii::CommandBuffer& commands) {

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "gpu/address_space.h"
 #include "gpu/no_driver.h"
 #include "gpu/pipeline_store.h"
 #include "gpu/vulkan_context.h"
@@ -14,6 +15,8 @@ namespace coppice {
 namespace {
 
 constexpr const char* validation_layer = "VK_LAYER_KHRONOS_validation";
+// What a CPU driver, its compiler and a small scene take; with less some crash while they load.
+constexpr std::uint64_t least_address_space = std::uint64_t{640} << 20;
 
 DeviceType device_type(vk::PhysicalDeviceType type) {
   switch (type) {
@@ -218,6 +221,7 @@ std::uint32_t VulkanContext::memory_type(std::uint32_t allowed, vk::MemoryProper
 }
 
 std::vector<DeviceListing> list_devices() {
+  check_address_space(least_address_space, "");
   std::vector<DeviceListing> devices;
   try {
     const vk::raii::Context loader;
@@ -234,6 +238,7 @@ std::vector<DeviceListing> list_devices() {
 namespace {
 
 std::unique_ptr<VulkanContext> make_context() {
+  check_address_space(least_address_space, "");
   try {
     return std::make_unique<VulkanContext>();
   } catch (const std::runtime_error&) {  // no loader

@@ -20,6 +20,14 @@ namespace {
 
 std::string last_error() { return std::strerror(errno); }
 
+// Of a link that leads nowhere yet, where it leads; the path itself if it is none, or one of many.
+std::filesystem::path follow(std::filesystem::path path) {
+  std::error_code error;
+  for (int links = 0; links < 40 && std::filesystem::is_symlink(path, error); ++links)
+    path = path.parent_path() / std::filesystem::read_symlink(path, error);
+  return path;
+}
+
 // Where the bytes go. A device or a pipe is written in place: renaming a file over it would replace it.
 struct Target {
   std::filesystem::path path;     // links followed
@@ -38,8 +46,11 @@ Target find_target(const std::filesystem::path& path) {
     if (error) fail(path, error.message());
     target.partial = target.path;
     if (!std::filesystem::is_regular_file(status)) return target;
-  } else if (const auto folder = path.parent_path(); !folder.empty()) {
-    if (!std::filesystem::is_directory(folder, error)) fail(path, "no such directory");
+  } else {
+    target.path = target.partial = follow(path);
+    if (const auto folder = target.path.parent_path(); !folder.empty()) {
+      if (!std::filesystem::is_directory(folder, error)) fail(path, "no such directory");
+    }
   }
   target.partial += "." + std::to_string(getpid()) + ".partial";
   return target;
