@@ -29,7 +29,8 @@ class Stability : public Command {
     EXPECT_EQ(row["example"].get<std::string>().empty(), row["examples"].empty()) << name;
     for (const auto& [failure, count] : counts) {
       const auto found = std::ranges::find_if(
-          row["examples"], [&](const nlohmann::json& example) { return example["failure"] == failure; });
+          row["examples"],
+          [&kind = failure](const nlohmann::json& example) { return example["failure"] == kind; });
       ASSERT_EQ(found != row["examples"].end(), row[count] > 0) << name << ": " << failure;
       if (found == row["examples"].end()) continue;
       EXPECT_TRUE((*found)["ray"].is_number()) << name;

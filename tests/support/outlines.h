@@ -38,9 +38,9 @@ inline Outline star_outline(Random& random, std::uint32_t corners) {
     return lower(a) != lower(b) ? lower(b) : cross(a, b) > 0;
   };
   std::ranges::stable_sort(outline, before);
-  const auto rest =
-      std::ranges::unique(outline, [&](auto a, auto b) { return !before(a, b) && !before(b, a); });
-  outline.erase(rest.begin(), rest.end());
+  // Not of std::ranges: clang 14 does not take the subrange that it returns.
+  const auto same = [&](glm::ivec2 a, glm::ivec2 b) { return !before(a, b) && !before(b, a); };
+  outline.erase(std::unique(outline.begin(), outline.end(), same), outline.end());
   return outline;
 }
 
