@@ -46,6 +46,7 @@ TEST_F(Command, BadFlagsAreRefusedWithStatus2) {
                {"render one.obj -o out.png --size 64", "--size"},
                {"render one.obj -o out.png --spp 0", "--spp"},
                {"render one.obj -o out.png --camera 1,2", "--camera"},
+               {"render one.obj -o out.png --camera ''", "--camera"},
                {"render one.obj -o out.png --camera 1,2,3,0,0,x", "'x' is no number"},
                {"render one.obj -o out.png --camera 1,2,3,0,0,inf", "--camera: all numbers"},
                {"render one.obj -o out.png --camera 1,2,3,1,2,3", "--camera: eye and target"},

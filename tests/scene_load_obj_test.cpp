@@ -86,6 +86,21 @@ TEST_F(LoadObj, WhatIsNoFiniteNumberMakesTrianglesInactive) {
             "scene.obj:4: vertex with a coordinate that is no finite number; 5 such in all");
 }
 
+TEST_F(LoadObj, ANumberSignBehindAPointBeginsNoComment) {
+  const Scene scene =
+      load(TRIANGLE + "v -1.#IND00 0 0\nv 1.#QNAN 0 0\nv 0 0 1#comment\nf 1 2 4\nf 1 2 5\nf 1 2 3\n");
+  EXPECT_EQ(count_inactive(scene), 2u);
+  EXPECT_EQ(warnings_of(scene),
+            std::vector<std::string>{
+                "scene.obj:4: vertex with a coordinate that is no finite number; 2 such in all"});
+}
+
+TEST_F(LoadObj, StatementsMayBeCapitals) {
+  const Scene scene = load("V 0 0 0\nv 1 0 0\nV 0 1 0\nF 1 2 3\n");
+  EXPECT_EQ(scene.indices.size(), 1u);
+  EXPECT_TRUE(scene.warnings.empty());
+}
+
 TEST_F(LoadObj, AMissingFileIsAnError) {
   EXPECT_EQ(error_of(folder_ / "none.obj"), "none.obj: no such file");
 }

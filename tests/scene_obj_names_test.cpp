@@ -83,6 +83,23 @@ TEST_F(ObjNames, OtherLetterCaseIsFoundAndSaidOnce) {
                    "scene.obj:5: material 'Red' not found, 'red' is used; 2 such in all"}));
 }
 
+TEST_F(ObjNames, AFolderAsWrittenDoesNotHideOneInOtherCase) {
+  std::filesystem::create_directory(folder_ / "mats");
+  std::filesystem::create_directory(folder_ / "Mats");
+  write("Mats/red.mtl", RED);
+  const Scene scene = load("mtllib mats/red.mtl\n" + TRIANGLE + "usemtl red\nf 1 2 3\n");
+  EXPECT_EQ(names_of(scene), Names{"red"});
+  EXPECT_EQ(warnings_of(scene),
+            Names{"scene.obj:1: material file 'mats/red.mtl' not found, 'Mats/red.mtl' is used"});
+}
+
+TEST_F(ObjNames, TheFileBesideMayBeInOtherCase) {
+  write("Scene.MTL", RED);
+  const Scene scene = load(TRIANGLE + "usemtl red\nf 1 2 3\n");
+  EXPECT_EQ(names_of(scene), Names{"red"});
+  EXPECT_EQ(warnings_of(scene), Names{"scene.obj:4: no mtllib in the file, 'Scene.MTL' is used"});
+}
+
 TEST_F(ObjNames, TheSameLettersWinOverOtherCase) {
   write("m.mtl", std::string(RED) + "newmtl Red\nKd 0 0 1\nnewmtl RED\nKd 0 1 0\n");
   const Scene scene =

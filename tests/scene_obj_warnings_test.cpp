@@ -30,12 +30,12 @@ TEST_F(ObjWarningLines, WhatChangesThePictureComesFirst) {
       "usemtl painted\nf 1 2 3\nf 1 2\nusemtl bare\nf 1 2 3\nsurf 0 1 0 1 1 2 3 4\n");
   EXPECT_EQ(warnings_of(scene),
             (std::vector<std::string>{
-                "scene.obj:9: face with fewer than three corners, left out",
                 "scene.obj:4: vertex with a coordinate that is no finite number",
                 "scene.obj:12: curves and surfaces are not read",
                 "scene.obj:1: material file 'lost.mtl' not found; 2 such in all",
                 "scene.obj:7: material 'painted' not found, default used; 2 such in all",
                 "scene.obj:3: colours of vertices are not used",
+                "scene.obj:9: face with fewer than three corners, left out",
                 "scene.obj:5: material 'Part0' not found, 'part0' is used",
                 "m.mtl:3: d and Tr of material 'part0' do not agree, d is used; 50 such in all"}));
 }

@@ -163,7 +163,8 @@ void add_view(CLI::App& command, Options& options) {
       .add_option("--camera", options.camera_text,
                   "eye, target, vertical field of view in degrees, and what is up in the picture, in the "
                   "coordinates of the file; default: frames the scene")
-      ->type_name("X,Y,Z,X,Y,Z[,FOV][,X,Y,Z]");
+      ->type_name("X,Y,Z,X,Y,Z[,FOV][,X,Y,Z]")
+      ->check([](const std::string& text) { return text.empty() ? "has no numbers" : ""; }, "");
   command.add_option("--up", options.up, "the axis of the file that points up")
       ->check(CLI::IsMember(std::vector<std::string>(UP_AXES.begin(), UP_AXES.end())))
       ->capture_default_str();

@@ -6,6 +6,7 @@
 #include "apps/progress.h"
 #include "apps/render_frame.h"
 #include "pipeline/interruption.h"
+#include "pipeline/pace.h"
 #include "pipeline/trace_pieces.h"
 #include "stages/cpu_executor.h"
 #include "stages/stages.h"
@@ -28,8 +29,9 @@ Bvh build_on_device(CheckedDevice& device, const SceneArrays& arrays, BuildRepor
 // The device's chain, in pieces, with the independent tracer in the place of its tracer.
 void trace_on_host(CpuExecutor& executor, const TreeSlots& tree, const TracePlan& trace, const Bvh& bvh,
                    std::span<const Triangle> triangles, RenderReport& report) {
-  // Some ms, so that Ctrl-C is heard soon.
-  const std::uint64_t piece_rays = bvh.nodes.empty() ? (1u << 24) / (triangles.size() + 1) : 1u << 16;
+  // So that Ctrl-C is heard soon.
+  constexpr double target_ms = 200;
+  Pace pace(target_ms, bvh.nodes.empty() ? (1u << 20) / (triangles.size() + 1) + 1 : 256);
   const InterruptionGuard guard;
   TracePieces pieces(tree, trace);
   Progress progress("tracing", 100);
@@ -37,7 +39,8 @@ void trace_on_host(CpuExecutor& executor, const TreeSlots& tree, const TracePlan
   while (!pieces.done()) {
     throw_if_interrupted();
     Chain chain = executor.chain();
-    pieces.append(chain, piece_rays);
+    const auto piece_start = std::chrono::steady_clock::now();
+    const std::uint64_t work = pieces.append(chain, pace.work());
     for (const Step& step : chain.steps()) {
       if (step.stage != &stages::trace_closest) {
         executor.run(step);
@@ -51,6 +54,9 @@ void trace_on_host(CpuExecutor& executor, const TreeSlots& tree, const TracePlan
       report.rays += args.ray_count;
       report.hits += std::ranges::count_if(hits, [](const Hit& hit) { return hit.triangle != NO_TRIANGLE; });
     }
+    pace.note(
+        work,
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - piece_start).count());
     progress.advance(static_cast<std::uint32_t>(100 * report.rays / pieces.work()));
   }
   throw_if_interrupted();

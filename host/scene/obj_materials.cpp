@@ -92,41 +92,39 @@ void ObjMaterials::read_library(std::string_view names, const std::string& stem,
 
 void ObjMaterials::read_unnamed_library(const std::string& stem, const std::string& place) {
   const std::string name = stem + ".mtl";
-  if (!take_file(name, MtlMatch::AS_WRITTEN, place) && !take_file(name, MtlMatch::NEAR, place)) return;
-  warnings_.add(ObjWarning::MTL_ELSEWHERE, place, "no mtllib in the file, " + in_quotes(name) + " is used");
+  std::optional<std::string> found = take_file(name, MtlMatch::AS_WRITTEN, place);
+  if (!found) found = take_file(name, MtlMatch::NEAR, place);
+  if (!found) return;
+  warnings_.add(ObjWarning::MTL_ELSEWHERE, place, "no mtllib in the file, " + in_quotes(*found) + " is used");
 }
 
 // Each way to understand a name that may be meant.
-bool ObjMaterials::take_file(const std::string& name, MtlMatch match, const std::string& place) {
+std::optional<std::string> ObjMaterials::take_file(const std::string& name, MtlMatch match,
+                                                   const std::string& place) {
   std::vector<std::string> spellings = {name};
   for (const std::string& other : {std::string(without_quotes(name)), without_escapes(name)}) {
     if (other != name) spellings.push_back(other);
   }
   for (const std::string& tried : spellings) {
-    if (files_.contains(tried)) return true;
+    if (files_.contains(tried)) return tried;
     if (const std::optional<FoundMtl> found = find_(tried, match)) {
-      if (match == MtlMatch::NEAR) {
-        warnings_.add(
-            ObjWarning::MTL_ELSEWHERE, place,
-            "material file " + in_quotes(name) + " not found, " + in_quotes(found->name) + " is used");
-      }
       add_materials(*found, place);
-      return true;
+      return found->name;
     }
   }
-  return false;
+  return std::nullopt;
 }
 
 void ObjMaterials::take_near(const std::string& name, const std::string& stem, const std::string& place) {
-  if (take_file(name, MtlMatch::NEAR, place)) return;
+  std::optional<std::string> found = take_file(name, MtlMatch::NEAR, place);
   const std::string beside = stem + ".mtl";
-  const bool was_read = files_.contains(beside);
-  if (!was_read && take_file(beside, MtlMatch::AS_WRITTEN, place)) {
+  if (!found && !files_.contains(beside)) found = take_file(beside, MtlMatch::AS_WRITTEN, place);
+  if (!found) {
+    warnings_.add(ObjWarning::MTL_NOT_FOUND, place, "material file " + in_quotes(name) + " not found");
+  } else if (*found != name) {
     warnings_.add(ObjWarning::MTL_ELSEWHERE, place,
-                  "material file " + in_quotes(name) + " not found, " + in_quotes(beside) + " is used");
-    return;
+                  "material file " + in_quotes(name) + " not found, " + in_quotes(*found) + " is used");
   }
-  warnings_.add(ObjWarning::MTL_NOT_FOUND, place, "material file " + in_quotes(name) + " not found");
 }
 
 void ObjMaterials::add_materials(const FoundMtl& file, const std::string& place) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -34,7 +35,8 @@ class ObjMaterials {
   std::vector<Material> take() { return std::move(materials_); }
 
  private:
-  bool take_file(const std::string& name, MtlMatch match, const std::string& place);
+  // The name of the file that was found, or read before.
+  std::optional<std::string> take_file(const std::string& name, MtlMatch match, const std::string& place);
   void take_near(const std::string& name, const std::string& stem, const std::string& place);
   void add_materials(const FoundMtl& file, const std::string& place);
 

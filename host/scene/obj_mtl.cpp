@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <map>
@@ -34,6 +35,15 @@ bool is_colour(std::string_view keyword) {
 bool looks_like_number(std::string_view word) {
   if (word.starts_with('+') || word.starts_with('-')) word.remove_prefix(1);
   return !word.empty() && (word[0] == '.' || (word[0] >= '0' && word[0] <= '9'));
+}
+
+// Whether all of a word is a number. One beyond the range of float is.
+bool is_number(std::string_view word) {
+  if (!looks_like_number(word)) return false;
+  if (word.starts_with('+')) word.remove_prefix(1);
+  float value = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return end == word.data() + word.size() && error != std::errc::invalid_argument;
 }
 
 // The words of a line before a comment.
@@ -112,16 +122,18 @@ class MaterialText {
                   ObjWarnings& warnings) {
     const bool is_xyz = !words.empty() && words[0] == "xyz";
     if (is_xyz) words.erase(words.begin());
-    if (words.empty() || !looks_like_number(words[0])) {
-      if (!words.empty() && (keyword == "Kd" || keyword == "Ke")) {
+    if (words.empty()) return;
+    // Where only r is given, g and b equal it.
+    if (words.size() == 1) words.resize(3, words[0]);
+    words.resize(std::min(words.size(), std::size_t{3}));
+    if (words.size() < 3 || !std::all_of(words.begin(), words.end(), is_number)) {
+      if (keyword == "Kd" || keyword == "Ke") {
         warnings.add(ObjWarning::COLOUR_NOT_READ, place,
                      std::string(keyword) + " of material '" + printable(std::string_view(name_)) +
-                         "' is not given in numbers and not read");
+                         "' is not given in one or three numbers and not read");
       }
       return;
     }
-    // Where only r is given, g and b equal it.
-    words.resize(3, words[0]);
     text_ += keyword;
     append(words);
     is_xyz_[keyword] = is_xyz;

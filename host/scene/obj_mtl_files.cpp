@@ -28,23 +28,25 @@ std::optional<FoundMtl> MtlFolder::find(const std::string& name, MtlMatch match)
 }
 
 std::optional<std::filesystem::path> MtlFolder::find_in_any_case(const std::filesystem::path& relative) {
-  std::filesystem::path found;
+  std::vector<std::filesystem::path> found = {{}};  // all that the steps so far may mean
   for (const std::filesystem::path& step : relative) {
-    const std::filesystem::path as_written = found / step;
-    std::error_code error;
-    if (std::filesystem::exists(folder_ / as_written, error)) {
-      found = as_written;
-      continue;
+    std::vector<std::filesystem::path> next;
+    const std::string lower = lower_case(step.string());
+    for (const std::filesystem::path& folder : found) {
+      std::error_code error;
+      if (std::filesystem::exists(folder_ / folder / step, error)) next.push_back(folder / step);
+      for (const std::filesystem::path& name : list(folder_ / folder)) {
+        if (name != step && lower_case(name.string()) == lower) next.push_back(folder / name);
+      }
     }
-    const auto& names = list(folder_ / found);
-    const auto is_same = [lower = lower_case(step.string())](const std::filesystem::path& name) {
-      return lower_case(name.string()) == lower;
-    };
-    const auto name = std::find_if(names.begin(), names.end(), is_same);
-    if (name == names.end()) return std::nullopt;
-    found /= *name;
+    found = std::move(next);
   }
-  return found;
+  const auto is_file = [&](const std::filesystem::path& path) {
+    std::error_code error;
+    return std::filesystem::is_regular_file(folder_ / path, error);
+  };
+  const auto file = std::find_if(found.begin(), found.end(), is_file);
+  return file == found.end() ? std::nullopt : std::optional(*file);
 }
 
 const std::vector<std::filesystem::path>& MtlFolder::list(const std::filesystem::path& folder) {

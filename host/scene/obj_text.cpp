@@ -37,6 +37,13 @@ constexpr std::array STATEMENTS =
     std::to_array<std::string_view>({"v", "vt", "vn", "vp", "f", "l", "p", "g", "o", "s", "usemtl", "mtllib",
                                      "cstype", "deg", "surf", "curv"});
 
+// A # behind a point is none: so some compilers' programs write what is no number, 1.#QNAN.
+std::size_t find_comment(std::string_view line) {
+  std::size_t at = line.find('#');
+  while (at != line.npos && at > 0 && line[at - 1] == '.') at = line.find('#', at + 1);
+  return at;
+}
+
 class ObjChecker {
  public:
   ObjChecker(std::string& text, glm::dvec3 offset, ObjPart& part)
@@ -67,6 +74,7 @@ class ObjChecker {
     Words words(std::string_view(text_).substr(begin, end - begin));
     const std::string_view keyword = words.next();
     if (keyword.empty() || keyword[0] == '#') return;
+    if (keyword == "V" || keyword == "F") text_[offset_of(keyword)] += 'a' - 'A';
     if (!part_.recognised) {
       part_.recognised = std::find(STATEMENTS.begin(), STATEMENTS.end(), keyword) != STATEMENTS.end();
     }
@@ -103,7 +111,7 @@ class ObjChecker {
   }
 
   void read_vertex(Words words) {
-    words = Words(words.rest().substr(0, words.rest().find('#')));
+    words = Words(words.rest().substr(0, find_comment(words.rest())));
     glm::vec3 position;
     for (int axis = 0; axis < 3; ++axis) {
       const std::string_view word = words.next();

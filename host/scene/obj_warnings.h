@@ -8,7 +8,6 @@ namespace coppice {
 
 // What may be odd about an OBJ and its MTL files and is not fatal, what changes the picture most first.
 enum class ObjWarning {
-  FACE_TOO_SMALL,
   NOT_FINITE,
   NO_FACES,
   POLYGON_CROSSES,
@@ -18,6 +17,7 @@ enum class ObjWarning {
   MATERIAL_NOT_FOUND,
   COLOUR_NOT_READ,
   VERTEX_COLOURS,
+  FACE_TOO_SMALL,
   MATERIAL_TWICE,
   MTL_ELSEWHERE,
   MATERIAL_SPELT_OTHERWISE,

@@ -20,12 +20,15 @@ namespace {
 
 std::string last_error() { return std::strerror(errno); }
 
-// Of a link that leads nowhere yet, where it leads; the path itself if it is none, or one of many.
-std::filesystem::path follow(std::filesystem::path path) {
+// Of a link that leads nowhere yet, where it leads; else the path itself.
+std::filesystem::path follow(const std::filesystem::path& path) {
   std::error_code error;
-  for (int links = 0; links < 40 && std::filesystem::is_symlink(path, error); ++links)
-    path = path.parent_path() / std::filesystem::read_symlink(path, error);
-  return path;
+  std::filesystem::path end = path;
+  for (int links = 0; std::filesystem::is_symlink(end, error); ++links) {
+    if (links == 40) fail(path, "too many links lead from one to another");
+    end = end.parent_path() / std::filesystem::read_symlink(end, error);
+  }
+  return end;
 }
 
 // Where the bytes go. A device or a pipe is written in place: renaming a file over it would replace it.
