@@ -16,7 +16,7 @@
 namespace coppice {
 namespace {
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef COPPICE_SANITIZED
 constexpr std::uint32_t RAY_COUNT = 50'000;
 #else
 constexpr std::uint32_t RAY_COUNT = 1'000'000;

@@ -15,7 +15,7 @@
 namespace coppice {
 namespace {
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef COPPICE_SANITIZED
 constexpr std::uint32_t RAY_COUNT = 2000;
 #else
 constexpr std::uint32_t RAY_COUNT = 20000;

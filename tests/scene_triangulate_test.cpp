@@ -217,7 +217,7 @@ testing::AssertionResult covers(const std::vector<glm::uvec3>& triangles, const 
 }
 
 TEST(Triangulate, CoversRandomOutlines) {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef COPPICE_SANITIZED
   constexpr int count = 10'000;
 #else
   constexpr int count = 100'000;
@@ -315,7 +315,7 @@ TEST(Triangulate, CoversEachPointAsOftenAsTheOutlineWindsAroundIt) {
 
 TEST(Triangulate, CoversLargeOutlines) {
   Random random(2);
-#ifdef __SANITIZE_ADDRESS__
+#ifdef COPPICE_SANITIZED
   const std::vector<std::uint32_t> sizes = {1000, 10'000};
 #else
   const std::vector<std::uint32_t> sizes = {1000, 10'000, 100'000};

@@ -24,8 +24,9 @@ void append_scattered(Scene& scene, glm::vec3 centre, float radius, Random& rand
     return append_triangle(scene, a, b, point_in(a, size, random), material);
   }
   if (kind < 98) {  // long and thin
-    const glm::vec3 along = radius * random.uniform(0.1f, 0.8f) * random.direction();
-    const glm::vec3 b = a + along;
+    // Two draws in one expression would come in an order that is the compiler's.
+    const glm::vec3 direction = random.direction();
+    const glm::vec3 b = a + radius * random.uniform(0.1f, 0.8f) * direction;
     return append_triangle(scene, a, b, point_in(b, radius * 0.002f, random), material);
   }
   const glm::vec3 b = point_in(centre, radius, random);
