@@ -93,6 +93,17 @@ TEST_F(ObjNames, AFolderAsWrittenDoesNotHideOneInOtherCase) {
             Names{"scene.obj:1: material file 'mats/red.mtl' not found, 'Mats/red.mtl' is used"});
 }
 
+// Each of 64 steps may mean two folders, but all lead back to one.
+TEST_F(ObjNames, StepsIntoFoldersAndOutAgainLeadToOnePlace) {
+  std::filesystem::create_directories(folder_ / "tex");
+  std::filesystem::create_directories(folder_ / "Tex");
+  write("Red.mtl", RED);
+  std::string name;
+  for (int i = 0; i < 64; ++i) name += "tex/../";
+  const Scene scene = load(TRIANGLE + "mtllib " + name + "red.mtl\nusemtl red\nf 1 2 3\n");
+  EXPECT_EQ(names_of(scene), Names{"red"});
+}
+
 TEST_F(ObjNames, TheFileBesideMayBeInOtherCase) {
   write("Scene.MTL", RED);
   const Scene scene = load(TRIANGLE + "usemtl red\nf 1 2 3\n");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <set>
 
 #include "scene/obj_lines.h"
 
@@ -31,12 +32,18 @@ std::optional<std::filesystem::path> MtlFolder::find_in_any_case(const std::file
   std::vector<std::filesystem::path> found = {{}};  // all that the steps so far may mean
   for (const std::filesystem::path& step : relative) {
     std::vector<std::filesystem::path> next;
+    std::set<std::filesystem::path>
+        places;  // `x/..` and `X/..` are one: else each step could double the paths
+    const auto add = [&](const std::filesystem::path& path) {
+      std::error_code error;
+      const std::filesystem::path place = std::filesystem::canonical(folder_ / path, error);
+      if (!error && places.insert(place).second) next.push_back(path);
+    };
     const std::string lower = lower_case(step.string());
     for (const std::filesystem::path& folder : found) {
-      std::error_code error;
-      if (std::filesystem::exists(folder_ / folder / step, error)) next.push_back(folder / step);
+      add(folder / step);
       for (const std::filesystem::path& name : list(folder_ / folder)) {
-        if (name != step && lower_case(name.string()) == lower) next.push_back(folder / name);
+        if (name != step && lower_case(name.string()) == lower) add(folder / name);
       }
     }
     found = std::move(next);

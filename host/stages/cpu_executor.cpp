@@ -14,17 +14,21 @@ Chain CpuExecutor::chain() const {
   return Chain(std::move(addresses));
 }
 
+bool CpuExecutor::does_nothing(const Step& step) const {
+  if (!step.stage) return step.clear_bytes == 0;
+  if (!step.indirect) return false;
+  std::uint32_t groups_x;
+  std::memcpy(&groups_x, at(step.place), sizeof groups_x);
+  return groups_x == 0;
+}
+
 void CpuExecutor::run(const Step& step) {
-  if (!step.stage) {
+  if (does_nothing(step)) return;
+  if (step.stage) {
+    step.stage->twin(step.args.data());
+  } else {
     std::memset(at(step.place), 0, step.clear_bytes);
-    return;
   }
-  if (step.indirect) {
-    std::uint32_t groups_x;
-    std::memcpy(&groups_x, at(step.place), sizeof groups_x);
-    if (groups_x == 0) return;
-  }
-  step.stage->twin(step.args.data());
 }
 
 }  // namespace coppice

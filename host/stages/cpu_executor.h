@@ -15,6 +15,9 @@ class CpuExecutor {
 
   Chain chain() const;
 
+  // A mark, or an indirect dispatch whose number of workgroups is now 0.
+  bool does_nothing(const Step& step) const;
+
   void run(const Step& step);
   void run(std::span<const Step> steps) {
     for (const Step& step : steps) run(step);

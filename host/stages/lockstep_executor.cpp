@@ -130,13 +130,17 @@ std::optional<Difference> LockstepExecutor::run(const std::function<void(Chain&)
   append(gpu_chain);
   append(cpu_chain);
   if (auto difference = compare(nullptr, "upload")) return difference;
-  for (std::size_t i = 0; i < gpu_chain.steps().size(); ++i) {
-    const Step& step = cpu_chain.steps()[i];
-    if (!step.stage && step.clear_bytes == 0) continue;  // a mark
-    gpu_.record({&gpu_chain.steps()[i], 1}).submit_and_wait(step_limit_seconds);
-    cpu_.run(step);
-    if (step.stage) ++stages_run_;
-    if (auto difference = compare(step.stage, step.stage ? step.stage->name : "clear")) return difference;
+  const std::span<const Step> gpu_steps = gpu_chain.steps(), cpu_steps = cpu_chain.steps();
+  for (std::size_t i = 0, end = 0; i < cpu_steps.size(); i = end) {
+    const bool nothing = cpu_.does_nothing(cpu_steps[i]);
+    end = i + 1;
+    while (nothing && end < cpu_steps.size() && cpu_.does_nothing(cpu_steps[end])) ++end;
+    gpu_.record(gpu_steps.subspan(i, end - i)).submit_and_wait(step_limit_seconds);
+    cpu_.run(cpu_steps.subspan(i, end - i));
+    for (const Step& step : cpu_steps.subspan(i, end - i)) stages_run_ += step.stage ? 1 : 0;
+    const StageDeclaration* const stage = nothing ? nullptr : cpu_steps[i].stage;
+    const char* const name = nothing ? "steps of no workgroups" : stage ? stage->name : "clear";
+    if (auto difference = compare(stage, name)) return difference;
   }
   return std::nullopt;
 }

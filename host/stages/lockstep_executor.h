@@ -11,7 +11,7 @@
 namespace coppice {
 
 struct Difference {
-  std::string stage;     // or "clear", or "upload" before the first step
+  std::string stage;     // or "clear", "steps of no workgroups", or "upload" before the first step
   std::string slot;      // or what lies behind it, up to the next
   std::uint64_t index;   // of the element; at least the slot's count behind it
   std::string cpu, gpu;  // the element's words in hexadecimal
@@ -26,9 +26,10 @@ struct NearlyListing {
 };
 
 // Runs a chain on a device and by its twins, on the same input, one step at a time, and compares all memory
-// of both after every step bit for bit: slots, guards and what lies between. Where the device is no CPU,
-// slots that a stage declares as nearly equal are held to their tolerance (stages/nearly.h); then the
-// device's bits are taken over, so that no stage is blamed for what came before it.
+// of both after every step bit for bit: slots, guards and what lies between. Indirect dispatches in a row
+// that come to no workgroups (levels beyond the last, rounds behind the end) are one step. Where the device
+// is no CPU, slots that a stage declares as nearly equal are held to their tolerance (stages/nearly.h); then
+// the device's bits are taken over, so that no stage is blamed for what came before it.
 class LockstepExecutor {
  public:
   LockstepExecutor(Device& device, const Layout& layout);
