@@ -10,11 +10,12 @@ set -euo pipefail
 source "$(dirname "$(realpath "${BASH_SOURCE[0]}")")/host/setup.sh"
 
 test_timeout=300 # seconds a test, where CMake sets no other
-# Long, and of a driver that is not the reference they would say little more than the rest: sizes, and times. And tests in
-# which a sort by lookback sums up tiles that are late: old lavapipe ends loops by itself, so there the outcome would hang
-# on how late they are; by default its sort has no lookback. And what only GPUs run: it is tested on the reference.
+# Long, and of a driver that is not the reference they would say little more than the rest: sizes, times, options. And
+# tests in which a sort by lookback sums up tiles that are late: old lavapipe ends loops by itself, so there the outcome
+# would hang on how late they are; by default its sort has no lookback. And what only GPUs run.
 reference_only='AMillion|EveryStageOfEveryTree|WideTree.PowersOfTwo|WideTree.SizesUpTo300|BenchChecksAndTimes'
-reference_only+='|TuneKeeps|TuneWithout|lookback_on_4_threads|AboutSixtyFourTilesOfASort|LikeAGpu'
+reference_only+='|TuneKeeps|TuneWithout|NamesMayHoldAnything|AFullDisk|IsNotWaitedFor|OptionsDoWhatTheySay'
+reference_only+='|OutputsThatCome|SeedsInARow|lookback_on_4_threads|AboutSixtyFourTilesOfASort|LikeAGpu'
 
 # timed NAME COMMAND...: notes how long it took.
 parts=()
@@ -61,7 +62,7 @@ run_ctest_on() (
 )
 
 # What is long there and does arithmetic without any memory of its own; by g++ it runs in full.
-not_sanitized='Watertight.*:HardRaysAre.*'
+not_sanitized='Watertight.*:HardRaysAre.*:*JudgeAccepts.*:*ClosestExactOn.*'
 
 # In a process a core: with the sanitizers a process takes longer to start than most of the tests to run.
 host_tests_sanitized() {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 
@@ -92,9 +93,9 @@ int run_compare(const Options& options) {
     }
   }
   conditions = "Traced on " + (conditions.empty() ? "no device" : conditions) + " at " +
-               std::to_string(options.width) + "x" + std::to_string(options.height) +
-               ", one ray a pixel; medians of " + std::to_string(options.frames) +
-               " runs. X: infeasible, with the reason.";
+               std::to_string(options.width) + "x" + std::to_string(options.height) + ", one ray a pixel; " +
+               (options.frames == 1 ? "one run" : "medians of " + std::to_string(options.frames) + " runs") +
+               ". X: infeasible, with the reason.";
   const std::string markdown = to_markdown(comparison, conditions);
   if (talks(options)) std::printf("%s", markdown.c_str());
   if (!options.markdown.empty()) write_file(options.markdown, markdown + "\n");

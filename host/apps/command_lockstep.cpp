@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "apps/checked_device.h"
 #include "apps/frame.h"

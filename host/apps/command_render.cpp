@@ -1,5 +1,6 @@
 #include <chrono>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "analysis/tree_hash.h"

@@ -5,6 +5,7 @@
 #include <cstdarg>
 #include <cstdio>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "apps/comparison_text.h"
 #include "pipeline/build.h"
