@@ -1,3 +1,5 @@
+#include <nlohmann/json.hpp>
+
 #include "apps/frame.h"
 #include "apps/measure_build.h"
 #include "apps/scene_room.h"
