@@ -5,13 +5,13 @@
 
 struct GridRay {
   vec3 origin;
-  vec3 inverse;   // finite; 0 for a ray that meets every box
-  vec3 pad;       // to subtract from near distances, beside what follows from the node
-  float spread;   // how much more than that to add to far ones
-  uint backward;  // those of the bytes x, y, z along which the ray goes backward
-  int first;      // distance where the ray begins, as bits
-  float unit;     // distances of a t of 1, a power of two
-  float offset;   // 0, or three ranges
+  vec3 inverse;     // finite; 0 for a ray that meets every box
+  vec3 room;        // for rounding, in a node that reaches 1 far from the origin: near distances less it, far ones more
+  vec3 fixed_room;  // beside that, in every node
+  uint backward;    // those of the bytes x, y, z along which the ray goes backward
+  int first;        // distance where the ray begins, as bits
+  float unit;       // distances of a t of 1, a power of two
+  float offset;     // 0, or three ranges
 };
 
 const float GRID_RANGE = 8589934592.0;  // 2^33, more than any distance within the scene
@@ -47,18 +47,19 @@ void prepare_grid_ray(TraceRay ray, Aabb scene, out GridRay grid) {
   vec3 inverse = vec3(finite_inverse(ray.inverse.x), finite_inverse(ray.inverse.y), finite_inverse(ray.inverse.z));
   precise vec3 scaled = inverse * grid.unit;
   grid.inverse = scaled;
-  precise vec3 room = abs(ray.origin) * GRID_FIXED_ROOM * abs(scaled) + grid.offset * GRID_OFFSET_ROOM;
+  grid.room = abs(scaled) * GRID_ROOM;
+  float least = grid.offset * GRID_OFFSET_ROOM + 2.0 * GRID_LEAST;
+  precise vec3 fixed_room = abs(ray.origin) * GRID_FIXED_ROOM * abs(scaled) + least;
   // Past the share of a limit, so that nothing is met where the ray begins behind the scene.
   precise float first = clamp(ray.t_min * grid.unit, -GRID_RANGE, GRID_RANGE) + grid.offset;
   grid.first = floatBitsToInt(max(first, GRID_LEAST));
   if (!(largest(reach) < GRID_FARTHEST)) {
     grid.inverse = vec3(0.0);
     grid.first = floatBitsToInt(GRID_LEAST);
-    room = vec3(GRID_MEETS_ALL);
+    grid.room = vec3(0.0);
+    fixed_room = vec3(GRID_MEETS_ALL);
   }
-  precise vec3 pad = room - grid.offset;
-  grid.pad = pad;
-  grid.spread = 2.0 * (grid.offset + GRID_LEAST);
+  grid.fixed_room = fixed_room;
   grid.backward = (grid.inverse.x < 0.0 ? 0xffu : 0u) | (grid.inverse.y < 0.0 ? 0xff00u : 0u) |
                   (grid.inverse.z < 0.0 ? 0xff0000u : 0u);
 }

@@ -1,12 +1,12 @@
 // The children of a wide node that one ray meets, nearest first. Needs `args` with wide nodes, and grid_ray.glsl.
+// Distances may be fused or not: their room is for the roundings of both, and no bit of them reaches a hit.
 
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer WideWordsBuffer { u64vec4 at[]; };
 
 const uint NO_KEY = 0x7fffffffu;
 
 int plane_distance(uint bytes, uint shift, float scale, float start) {
-  precise float distance = float(int((bytes >> shift) & 0xffu)) * scale + start;
-  return floatBitsToInt(distance);
+  return floatBitsToInt(fma(float(int((bytes >> shift) & 0xffu)), scale, start));
 }
 
 // Where the ray enters the box and, in the three lowest bits, the child; NO_KEY for a box that it misses up to `limit`.
@@ -55,12 +55,12 @@ void find_keys(GridRay grid, NodeWords words, int limit, out uint key[WIDE_CHILD
   vec3 cell = uintBitsToFloat(cell_bits);
   precise vec3 scale = cell * grid.inverse;
   precise vec3 to_origin = uintBitsToFloat(uvec3(origin_xy, origin_z.x)) - grid.origin;
-  precise vec3 start = to_origin * grid.inverse;
+  vec3 start = fma(to_origin, grid.inverse, vec3(grid.offset));
   float largest_cell = uintBitsToFloat(max(max(cell_bits.x, cell_bits.y), cell_bits.z));
   precise float reach = largest(to_origin, to_origin) + largest_cell * WIDE_NODE_STEPS;
-  precise vec3 pad = abs(grid.inverse) * (reach * GRID_ROOM) + grid.pad;
+  vec3 pad = fma(grid.room, vec3(reach), grid.fixed_room);
   precise vec3 near_start = start - pad;
-  precise vec3 far_start = start + (pad + grid.spread);
+  precise vec3 far_start = start + pad;
   uvec2 planes[6] = uvec2[6](unpackUint2x32(low.z), unpackUint2x32(low.w), unpackUint2x32(high.x),
                              unpackUint2x32(high.y), unpackUint2x32(high.z), unpackUint2x32(high.w));
   [[unroll]] for (uint pair = 0u; pair < WIDE_CHILDREN / 2u; ++pair) {
