@@ -61,7 +61,7 @@ run_ctest_on() (
   run_ctest "$build_dir" "$@"
 )
 
-# What is long there and does arithmetic without any memory of its own; by g++ it runs in full.
+# The longest there, which say of many rays and scenes what shorter tests of the same code say of few.
 not_sanitized='Watertight.*:HardRaysAre.*:*JudgeAccepts.*:*ClosestExactOn.*'
 
 # In a process a core: with the sanitizers a process takes longer to start than most of the tests to run.

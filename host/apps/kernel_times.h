@@ -14,7 +14,7 @@
 
 namespace coppice {
 
-using Json = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;  // declared only: its header takes seconds to compile
 
 // The steps of a chain that the device runs, and their times from one run with Timestamps::every_step; no
 // times from a device without timestamps.

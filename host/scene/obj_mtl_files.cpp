@@ -32,8 +32,9 @@ std::optional<std::filesystem::path> MtlFolder::find_in_any_case(const std::file
   std::vector<std::filesystem::path> found = {{}};  // all that the steps so far may mean
   for (const std::filesystem::path& step : relative) {
     std::vector<std::filesystem::path> next;
-    std::set<std::filesystem::path>
-        places;  // `x/..` and `X/..` are one: else each step could double the paths
+    // Of paths to one place, such as x/.. and X/.., the first is kept: else each step could double their
+    // number.
+    std::set<std::filesystem::path> places;
     const auto add = [&](const std::filesystem::path& path) {
       std::error_code error;
       const std::filesystem::path place = std::filesystem::canonical(folder_ / path, error);
