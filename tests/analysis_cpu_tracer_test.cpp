@@ -11,15 +11,10 @@
 #include "analysis/cpu_tracer.h"
 #include "builders/ploc.h"
 #include "scene/random.h"
+#include "support/floor.h"
 
 namespace coppice {
 namespace {
-
-const float INFINITE = std::numeric_limits<float>::infinity();
-const float NOT_A_NUMBER = std::numeric_limits<float>::quiet_NaN();
-const Triangle FLOOR{vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0)};
-
-Ray ray_from(const vec3& origin, const vec3& direction) { return {origin, 0.0f, direction, INFINITE}; }
 
 bool same_bits(const Hit& a, const Hit& b) { return std::memcmp(&a, &b, sizeof(Hit)) == 0; }
 
@@ -32,7 +27,7 @@ void expect_miss(const Ray& ray, const std::vector<Triangle>& triangles = {FLOOR
 }
 
 // A scene of triangles and rays, for the tracers to agree on.
-struct Encounter {
+struct TracedScene {
   const char* name;
   float unit;           // of length
   vec3 offset;          // of the scene from the origin, in units
@@ -41,9 +36,9 @@ struct Encounter {
   bool axis_aligned;    // rays along an axis, with zeros of both signs
 };
 
-void PrintTo(const Encounter& encounter, std::ostream* out) { *out << encounter.name; }
+void PrintTo(const TracedScene& encounter, std::ostream* out) { *out << encounter.name; }
 
-class TracersAgree : public testing::TestWithParam<Encounter> {
+class TracersAgree : public testing::TestWithParam<TracedScene> {
  protected:
   vec3 point(Random& random, float extent) const {
     vec3 p = random.in_cube() * extent;
@@ -94,16 +89,17 @@ TEST_P(TracersAgree, WithBruteForceToTheBit) {
   EXPECT_GT(hit_count, 100);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Scenes, TracersAgree,
-    testing::Values(Encounter{"plain", 1, vec3(0), 0.5f, 0, false},
-                    Encounter{"large", 1, vec3(0), 3, 0, false}, Encounter{"ties", 1, vec3(0), 1, 4, false},
-                    Encounter{"ties_along_axes", 1, vec3(0), 1, 4, true},
-                    Encounter{"along_axes", 1, vec3(0), 0.5f, 0, true},
-                    Encounter{"far_away", 1, vec3(148376, 1234, -223423), 0.5f, 0, false},
-                    Encounter{"microscopic", 1e-30f, vec3(0), 0.5f, 0, false},
-                    Encounter{"astronomic", 1e30f, vec3(0), 0.5f, 0, false}),
-    [](const auto& test) { return std::string(test.param.name); });
+INSTANTIATE_TEST_SUITE_P(Scenes, TracersAgree,
+                         testing::Values(TracedScene{"plain", 1, vec3(0), 0.5f, 0, false},
+                                         TracedScene{"large", 1, vec3(0), 3, 0, false},
+                                         TracedScene{"ties", 1, vec3(0), 1, 4, false},
+                                         TracedScene{"ties_along_axes", 1, vec3(0), 1, 4, true},
+                                         TracedScene{"along_axes", 1, vec3(0), 0.5f, 0, true},
+                                         TracedScene{"far_away", 1, vec3(148376, 1234, -223423), 0.5f, 0,
+                                                     false},
+                                         TracedScene{"microscopic", 1e-30f, vec3(0), 0.5f, 0, false},
+                                         TracedScene{"astronomic", 1e30f, vec3(0), 0.5f, 0, false}),
+                         [](const auto& test) { return std::string(test.param.name); });
 
 TEST(BruteForceHit, FindsDistanceAndBarycentricCoordinates) {
   const Hit hit =

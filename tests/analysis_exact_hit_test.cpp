@@ -11,20 +11,12 @@
 #include "analysis/hard_rays.h"
 #include "builders/ploc.h"
 #include "builders/sbvh.h"
+#include "support/floor.h"
 #include "support/split_trees.h"
 #include "support/triangles.h"
 
 namespace coppice {
 namespace {
-
-const float INFINITE = std::numeric_limits<float>::infinity();
-const float NOT_A_NUMBER = std::numeric_limits<float>::quiet_NaN();
-const Triangle FLOOR{vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0)};
-
-Ray ray_from(const vec3& origin, const vec3& direction) { return {origin, 0.0f, direction, INFINITE}; }
-
-// Straight down on the floor, from z = 1.
-Ray down_at(float x, float y) { return ray_from(vec3(x, y, 1), vec3(0, 0, -1)); }
 
 float above(float x) { return std::nextafter(x, INFINITE); }
 float below(float x) { return std::nextafter(x, -INFINITE); }

@@ -16,6 +16,7 @@
 #include "analysis/hard_rays.h"
 #include "analysis/judge_hits.h"
 #include "builders/ploc.h"
+#include "scene/bounds.h"
 #include "scene/shapes.h"
 #include "support/split_trees.h"
 #include "support/triangles.h"
@@ -24,8 +25,6 @@ namespace coppice {
 namespace {
 
 constexpr std::uint32_t COUNT = 300;
-
-bool is_finite(const vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 bool is_denormal(float x) { return x != 0.0f && std::abs(x) < FLT_MIN; }
 

@@ -3,6 +3,7 @@
 
 #include "analysis/cpu_tracer.h"
 #include "scene/generators.h"
+#include "support/floor.h"
 #include "support/hit_referee.h"
 #include "support/rays.h"
 #include "support/triangles.h"
@@ -10,13 +11,12 @@
 namespace coppice {
 namespace {
 
-const Triangle FLOOR{vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0)};
 const Triangle CEILING{vec3(0, 0, 1), vec3(1, 0, 1), vec3(0, 1, 1)};
 const std::vector<Triangle> TWO_STOREYS = {FLOOR, CEILING};
-const Hit MISS{std::numeric_limits<float>::infinity(), NO_TRIANGLE, 0, 0};
+const Hit NO_HIT{INFINITE, NO_TRIANGLE, 0, 0};
 
 // Down from z = 2, so that CEILING is at t = 1 and FLOOR at t = 2.
-Ray down_at(float x, float y) { return {vec3(x, y, 2), 0, vec3(0, 0, -1), MISS.t}; }
+Ray down_on_both(float x, float y) { return down_at(x, y, 2); }
 
 Verdict judge(const Ray& ray, const Hit& one, const Hit& other,
               const std::vector<Triangle>& triangles = TWO_STOREYS) {
@@ -26,35 +26,35 @@ Verdict judge(const Ray& ray, const Hit& one, const Hit& other,
 }
 
 TEST(HitReferee, TakesTheSameHitForTheSame) {
-  EXPECT_EQ(judge(down_at(0.2f, 0.2f), {1, 1, 0.2f, 0.2f}, {1, 1, 0.2f, 0.2f}), Verdict::same);
-  EXPECT_EQ(judge(down_at(0.2f, 0.2f), {1, 1, 0.2f, 0.2f}, {1 + 1e-6f, 1, 0.2f, 0.2f}), Verdict::same);
-  EXPECT_EQ(judge(down_at(5, 5), MISS, MISS), Verdict::same);
+  EXPECT_EQ(judge(down_on_both(0.2f, 0.2f), {1, 1, 0.2f, 0.2f}, {1, 1, 0.2f, 0.2f}), Verdict::same);
+  EXPECT_EQ(judge(down_on_both(0.2f, 0.2f), {1, 1, 0.2f, 0.2f}, {1 + 1e-6f, 1, 0.2f, 0.2f}), Verdict::same);
+  EXPECT_EQ(judge(down_on_both(5, 5), NO_HIT, NO_HIT), Verdict::same);
 }
 
 TEST(HitReferee, SeesATie) {
   const std::vector<Triangle> twice = {FLOOR, FLOOR};
-  EXPECT_EQ(judge(down_at(0.2f, 0.2f), {2, 0, 0, 0}, {2, 1, 0, 0}, twice), Verdict::tie);
+  EXPECT_EQ(judge(down_on_both(0.2f, 0.2f), {2, 0, 0, 0}, {2, 1, 0, 0}, twice), Verdict::tie);
 }
 
 TEST(HitReferee, ForgivesAMissAtAnEdge) {
-  EXPECT_EQ(judge(down_at(0.5f, 1e-7f), {1, 1, 0, 0}, MISS), Verdict::borderline);
-  EXPECT_EQ(judge(down_at(0.5f, -1e-7f), {1, 1, 0, 0}, MISS), Verdict::borderline);
-  EXPECT_EQ(judge(down_at(0.5f, 1e-7f), {1, 1, 0, 0}, {2, 0, 0, 0}), Verdict::borderline);
+  EXPECT_EQ(judge(down_on_both(0.5f, 1e-7f), {1, 1, 0, 0}, NO_HIT), Verdict::borderline);
+  EXPECT_EQ(judge(down_on_both(0.5f, -1e-7f), {1, 1, 0, 0}, NO_HIT), Verdict::borderline);
+  EXPECT_EQ(judge(down_on_both(0.5f, 1e-7f), {1, 1, 0, 0}, {2, 0, 0, 0}), Verdict::borderline);
 }
 
 TEST(HitReferee, RefusesAMissInsideOfATriangle) {
-  EXPECT_EQ(judge(down_at(0.5f, 1e-4f), {1, 1, 0, 0}, MISS), Verdict::wrong);
-  EXPECT_EQ(judge(down_at(0.5f, 1e-4f), {1, 1, 0, 0}, {2, 0, 0, 0}), Verdict::wrong);
+  EXPECT_EQ(judge(down_on_both(0.5f, 1e-4f), {1, 1, 0, 0}, NO_HIT), Verdict::wrong);
+  EXPECT_EQ(judge(down_on_both(0.5f, 1e-4f), {1, 1, 0, 0}, {2, 0, 0, 0}), Verdict::wrong);
 }
 
 TEST(HitReferee, RefusesAHitOutsideOfATriangle) {
-  EXPECT_EQ(judge(down_at(0.5f, -1e-4f), {1, 1, 0, 0}, MISS), Verdict::wrong);
-  EXPECT_EQ(judge(down_at(0.5f, -1e-4f), {1, 1, 0, 0}, {1, 1, 0, 0}), Verdict::wrong);
+  EXPECT_EQ(judge(down_on_both(0.5f, -1e-4f), {1, 1, 0, 0}, NO_HIT), Verdict::wrong);
+  EXPECT_EQ(judge(down_on_both(0.5f, -1e-4f), {1, 1, 0, 0}, {1, 1, 0, 0}), Verdict::wrong);
 }
 
 TEST(HitReferee, RefusesAHitOfATriangleWithoutArea) {
   const std::vector<Triangle> segment = {{vec3(0), vec3(0.5f, 0, 0), vec3(1, 0, 0)}};
-  EXPECT_EQ(judge(down_at(0.5f, 0), {2, 0, 0, 0}, MISS, segment), Verdict::wrong);
+  EXPECT_EQ(judge(down_on_both(0.5f, 0), {2, 0, 0, 0}, NO_HIT, segment), Verdict::wrong);
 }
 
 // Faults planted into the hits of a tracer, wherever these are well inside of their triangles.
@@ -81,7 +81,7 @@ class PlantedFault : public testing::Test {
 };
 
 TEST_F(PlantedFault, AMissIsRefused) {
-  expect_refused([](const Hit&) { return MISS; });
+  expect_refused([](const Hit&) { return NO_HIT; });
 }
 
 TEST_F(PlantedFault, AnotherDistanceIsRefused) {

@@ -11,6 +11,7 @@
 #include "analysis/hard_rays.h"
 #include "analysis/judge_hits.h"
 #include "builders/ploc.h"
+#include "support/floor.h"
 #include "support/split_trees.h"
 #include "support/triangles.h"
 #include "twins/intersect.h"
@@ -18,7 +19,6 @@
 namespace coppice {
 namespace {
 
-const float INFINITE = std::numeric_limits<float>::infinity();
 const Hit MISS{INFINITE, NO_TRIANGLE, 0, 0};
 
 // Triangles, rays and the hits that someone reports.
@@ -151,10 +151,7 @@ TEST_F(PlantedErrors, AnInventedHit) {
 }
 
 // A floor, and another below it.
-const Triangle FLOOR{vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0)};
 const Triangle CELLAR{vec3(-4, -4, -1), vec3(8, -4, -1), vec3(-4, 8, -1)};
-
-Ray down_at(float x, float y) { return {vec3(x, y, 1), 0.0f, vec3(0, 0, -1), INFINITE}; }
 
 HitVerdicts judge_one(const std::vector<Triangle>& triangles, const Ray& ray, const Hit& hit) {
   return Trial(triangles, {ray}, {hit}).judge();

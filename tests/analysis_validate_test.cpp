@@ -11,12 +11,10 @@
 #include "analysis/validate.h"
 #include "builders/ploc.h"
 #include "scene/random.h"
+#include "support/floor.h"
 
 namespace coppice {
 namespace {
-
-const float INFINITE = std::numeric_limits<float>::infinity();
-const float NOT_A_NUMBER = std::numeric_limits<float>::quiet_NaN();
 
 // A valid tree, for each test to break.
 class FindFault : public testing::Test {

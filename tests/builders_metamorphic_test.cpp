@@ -16,19 +16,19 @@
 namespace coppice {
 namespace {
 
-using Names = std::vector<std::string_view>;
+using BuilderNames = std::vector<std::string_view>;
 
-const Names WITHOUT_MORTON_ORDER = {"top-down", "bottom-up",  "sah", "sah-sweep",
-                                    "gd16",     "gd16-early", "sbvh"};
+const BuilderNames WITHOUT_MORTON_ORDER = {"top-down", "bottom-up",  "sah", "sah-sweep",
+                                           "gd16",     "gd16-early", "sbvh"};
 
-Names every_builder() {
-  Names names;
+BuilderNames every_builder() {
+  BuilderNames names;
   for (const CpuBuilder& builder : cpu_builders()) {
     if (builder.name != "none") names.push_back(builder.name);
   }
   return names;
 }
-const Names EVERY_BUILDER = every_builder();
+const BuilderNames EVERY_BUILDER = every_builder();
 
 constexpr std::uint32_t MORTON_BITS = 60;
 

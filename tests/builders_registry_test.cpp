@@ -16,9 +16,9 @@ namespace coppice {
 namespace {
 
 #ifdef COPPICE_SANITIZED
-constexpr std::uint32_t RAY_COUNT = 2000;
+constexpr std::uint32_t RAYS_A_BUILDER = 2000;
 #else
-constexpr std::uint32_t RAY_COUNT = 20000;
+constexpr std::uint32_t RAYS_A_BUILDER = 20000;
 #endif
 
 class EveryBuilder : public testing::TestWithParam<std::string_view> {};
@@ -37,15 +37,15 @@ TEST_P(EveryBuilder, GivesAValidTreeOnEveryHardCase) {
 TEST_P(EveryBuilder, GivesTheHitsOfBruteForce) {
   const auto triangles = scene_arrays(make_scatter(2000)).triangles;
   const Bvh bvh = find_cpu_builder(GetParam()).build(triangles, {});
-  std::vector<Ray> rays = rays_around(triangles, RAY_COUNT, 1);
-  const std::vector<Ray> at_edges = rays_at_edges(triangles, RAY_COUNT / 4, 2);
+  std::vector<Ray> rays = rays_around(triangles, RAYS_A_BUILDER, 1);
+  const std::vector<Ray> at_edges = rays_at_edges(triangles, RAYS_A_BUILDER / 4, 2);
   rays.insert(rays.end(), at_edges.begin(), at_edges.end());
   std::vector<Hit> by_tree(rays.size()), by_force(rays.size());
   trace_all(bvh.nodes, triangles, rays, by_tree);
   trace_all({}, triangles, rays, by_force);
   EXPECT_EQ(compare_hits(by_tree, by_force).count, 0u);
   EXPECT_GT(std::ranges::count_if(by_force, [](const Hit& hit) { return hit.triangle != NO_TRIANGLE; }),
-            RAY_COUNT / 5);
+            RAYS_A_BUILDER / 5);
 }
 
 std::vector<std::string_view> tree_builders() {

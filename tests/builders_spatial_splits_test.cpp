@@ -8,13 +8,13 @@
 #include "analysis/quality.h"
 #include "builders/gd16.h"
 #include "builders/sbvh.h"
+#include "support/floor.h"
 #include "support/split_trees.h"
 
 namespace coppice {
 namespace {
 
 constexpr ReferenceCap NO_SPARE{.per_triangle = 1.0, .constant = 0};
-const float INFINITE = std::numeric_limits<float>::infinity();
 
 struct SplitBuilder {
   const char* name;

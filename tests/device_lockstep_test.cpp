@@ -9,6 +9,7 @@
 #include "stages/lockstep_executor.h"
 #include "stages/stages.h"
 #include "support/lockstep.h"
+#include "support/planted_faults.h"
 
 namespace coppice {
 namespace {
@@ -158,24 +159,9 @@ TEST_F(Lockstep, ColoursOutsideOfAPicture) {
   EXPECT_EQ(executor.gpu().read(trace.image), expected);
 }
 
-// --- Planted faults: a twin that does its work and one thing wrong.
+// --- Planted faults.
 
-template <const auto* stage, auto spoil>
-StageDeclaration faulty() {
-  StageDeclaration declaration = *stage;
-  declaration.twin = [](const void* args) {
-    stage->twin(args);
-    spoil(args);
-  };
-  return declaration;
-}
-
-template <class Args>
-Args args_of(const void* args) {
-  return *static_cast<const Args*>(args);
-}
-
-struct Fault {
+struct StageFault {
   const char* stage;
   const char* slot;
   StageDeclaration declaration;
@@ -192,7 +178,7 @@ void wrong_shift(const void* args) {
   for (uint digit = 0; digit < SORT_DIGITS; ++digit) sort.keys_out[digit % sort.count] >>= sort.pass;
 }
 
-std::vector<Fault> faults() {
+std::vector<StageFault> stage_faults() {
   return {
       {"primitive_bounds", "boxes",
        faulty<&stages::primitive_bounds,
@@ -250,7 +236,7 @@ std::vector<Fault> faults() {
 }
 
 TEST_F(Lockstep, NamesAPlantedFaultByStageAndSlot) {
-  for (const Fault& fault : faults()) {
+  for (const StageFault& fault : stage_faults()) {
     const std::vector<Triangle> triangles = random_triangles(fault.triangles, 1);
     BuildOptions options;
     options.builder = fault.builder;

@@ -6,16 +6,14 @@
 
 #include "analysis/tree_hash.h"
 #include "builders/ploc.h"
-#include "interface/lookback.h"
 #include "interface/sort.h"
 #include "stages/errors.h"
 #include "stages/lockstep_executor.h"
 #include "support/device_run.h"
+#include "support/planted_faults.h"
 
 namespace coppice {
 namespace {
-
-constexpr std::uint32_t silent(std::uint32_t tiles) { return tiles << LOOKBACK_SILENT_SHIFT; }
 
 struct Stress {
   const char* name;

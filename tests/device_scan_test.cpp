@@ -4,20 +4,18 @@
 
 #include <numeric>
 
-#include "interface/lookback.h"
 #include "pipeline/scan.h"
 #include "scene/random.h"
 #include "stages/errors.h"
 #include "stages/lockstep_executor.h"
 #include "stages/stages.h"
+#include "support/planted_faults.h"
 #include "support/test_device.h"
 
 namespace coppice {
 namespace {
 
 constexpr std::uint32_t tile_words = SCAN_TILE * 4;
-
-constexpr std::uint32_t silent(std::uint32_t tiles) { return tiles << LOOKBACK_SILENT_SHIFT; }
 
 std::vector<uint> random_words(std::size_t count, uint mask = ~0u) {
   Random random(static_cast<std::uint32_t>(count) + 1);
@@ -110,16 +108,6 @@ TEST_F(DeviceScan, RefusesMoreWordsThanFit) {
   Layout layout(std::uint64_t{1} << 40);
   EXPECT_NO_THROW(plan_scan(layout, max_scan_words, {}));
   EXPECT_THROW(plan_scan(layout, max_scan_words + 1, {}), std::invalid_argument);
-}
-
-template <const auto* stage, auto spoil>
-StageDeclaration faulty() {
-  StageDeclaration declaration = *stage;
-  declaration.twin = [](const void* args) {
-    stage->twin(args);
-    spoil(args);
-  };
-  return declaration;
 }
 
 TEST_F(DeviceScan, NamesAPlantedFaultByStageAndSlot) {

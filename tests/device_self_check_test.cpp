@@ -18,7 +18,7 @@ class SelfCheck : public DeviceTest {};
 bool is_stage(const Step& step, std::string_view name) { return step.stage && step.stage->name == name; }
 
 template <class Args>
-Args args_of(const Step& step) {
+Args step_args_of(const Step& step) {
   Args args;
   std::memcpy(&args, step.args.data(), sizeof args);
   return args;
@@ -26,7 +26,7 @@ Args args_of(const Step& step) {
 
 bool uses_lookback(const std::vector<Step>& steps) {
   return std::any_of(steps.begin(), steps.end(), [](const Step& step) {
-    return is_stage(step, "ploc_merge") && args_of<PlocMergeArgs>(step).lookback != 0;
+    return is_stage(step, "ploc_merge") && step_args_of<PlocMergeArgs>(step).lookback != 0;
   });
 }
 
@@ -97,7 +97,7 @@ TEST_F(SelfCheck, DoesWithoutLookbackWhereItEndsWithAnError) {
   bool stressed = false;
   EXPECT_FALSE(check_device(test_device(), {}, [&](std::vector<Step>& steps) {
     for (Step& step : steps) {
-      if (!is_stage(step, "ploc_merge") || args_of<PlocMergeArgs>(step).lookback == 0) continue;
+      if (!is_stage(step, "ploc_merge") || step_args_of<PlocMergeArgs>(step).lookback == 0) continue;
       step.specialization[0] = step.specialization[1] = 0;
       step.specialization[2] = 1u << LOOKBACK_SILENT_SHIFT;  // no poll, no fallback, a silent tile
       stressed = true;

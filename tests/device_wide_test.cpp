@@ -9,6 +9,7 @@
 #include "stages/lockstep_executor.h"
 #include "stages/stages.h"
 #include "support/lockstep.h"
+#include "support/planted_faults.h"
 #include "support/wide.h"
 
 namespace coppice {
@@ -104,16 +105,11 @@ TEST_F(WideTreeOfTheHost, ChainsUpToTheHeightThatIsTaken) {
 
 // --- Planted faults: a twin that does its work and one thing wrong.
 
-struct Fault {
+struct WideFault {
   const StageDeclaration* stage;
   const char* slot;
   void (*twin)(const void* args);
 };
-
-template <class Args>
-Args args_of(const void* args) {
-  return *static_cast<const Args*>(args);
-}
 
 constexpr auto one_size_more = [](const void* args) {
   const auto a = args_of<WideSizesArgs>(args);
@@ -121,7 +117,7 @@ constexpr auto one_size_more = [](const void* args) {
   ++a.sizes[a.levels[a.level].first];
 };
 
-std::vector<Fault> faults() {
+std::vector<WideFault> wide_faults() {
   return {{&stages::wide_root, "clusters_even",
            [](const void* args) {
              twins::wide_root(args_of<WideCollapseArgs>(args));
@@ -142,7 +138,7 @@ std::vector<Fault> faults() {
 }
 
 TEST_F(WideTreeOfTheHost, NamesAPlantedFaultByStageAndSlot) {
-  for (const Fault& fault : faults()) {
+  for (const WideFault& fault : wide_faults()) {
     StageDeclaration faulty = *fault.stage;
     faulty.twin = fault.twin;
     Layout layout(test_device().properties().max_block_bytes);

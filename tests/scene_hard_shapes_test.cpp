@@ -20,10 +20,6 @@
 namespace coppice {
 namespace {
 
-Scene make(std::string_view name, std::uint32_t count, std::uint64_t seed = 1) {
-  return find_hard_case(name)->make(count, seed);
-}
-
 vec3 extent(const Triangle& t) {
   const Aabb box = triangle_box(t);
   return box.box_max - box.box_min;
@@ -48,14 +44,14 @@ auto count_edges(const Scene& scene, const Vertex& vertex) {
 }
 
 TEST(HardShapes, ThePlanarGridHasNoExtentAcross) {
-  for (const Triangle& t : triangles_of(make("planar-grid", 1000))) {
+  for (const Triangle& t : triangles_of(make_hard_case("planar-grid", 1000))) {
     EXPECT_EQ(extent(t).y, 0);
     EXPECT_GT(area(t), 0);
   }
 }
 
 TEST(HardShapes, PointsAndSegmentsHaveNoArea) {
-  const auto triangles = triangles_of(make("points", 1000));
+  const auto triangles = triangles_of(make_hard_case("points", 1000));
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     EXPECT_EQ(area(triangles[i]), 0);
     EXPECT_EQ(extent(triangles[i]) == vec3(0), i % 2 == 0);
@@ -64,7 +60,7 @@ TEST(HardShapes, PointsAndSegmentsHaveNoArea) {
 
 TEST(HardShapes, NeedlesAreLongAndHaveAlmostNoArea) {
   int without_area = 0;
-  for (const Triangle& t : triangles_of(make("needles", 10'000))) {
+  for (const Triangle& t : triangles_of(make_hard_case("needles", 10'000))) {
     EXPECT_NEAR(glm::length(t.b - t.a), 10, 1e-4);
     EXPECT_LT(area(t), 2e-5);
     without_area += area(t) == 0;
@@ -74,14 +70,14 @@ TEST(HardShapes, NeedlesAreLongAndHaveAlmostNoArea) {
 }
 
 TEST(HardShapes, TheBoxOfADiagonalIsAlmostTheWholeScene) {
-  for (const Triangle& t : triangles_of(make("diagonals", 1000))) {
+  for (const Triangle& t : triangles_of(make_hard_case("diagonals", 1000))) {
     for (int axis = 0; axis < 3; ++axis) EXPECT_GT(extent(t)[axis], 0.97f * 202);
     EXPECT_LT(area(t), 4);
   }
 }
 
 TEST(HardShapes, OneHugeTriangleIsOverAllTinyOnes) {
-  const auto triangles = triangles_of(make("huge-over-tiny", 1001));
+  const auto triangles = triangles_of(make_hard_case("huge-over-tiny", 1001));
   const Triangle& huge = triangles.front();
   const auto side = [](vec3 a, vec3 b, vec3 p) {
     return (b.x - a.x) * (p.z - a.z) - (b.z - a.z) * (p.x - a.x);
@@ -95,7 +91,7 @@ TEST(HardShapes, OneHugeTriangleIsOverAllTinyOnes) {
 }
 
 TEST(HardShapes, PairsShareAnEdge) {
-  const Scene scene = make("edge-pairs", 101);
+  const Scene scene = make_hard_case("edge-pairs", 101);
   for (std::size_t i = 0; i + 1 < scene.indices.size(); i += 2) {
     const glm::uvec3 t = scene.indices[i], u = scene.indices[i + 1];
     EXPECT_TRUE(t.x == u.y && t.y == u.x && t.z != u.z);
@@ -107,7 +103,7 @@ TEST(HardShapes, PairsShareAnEdge) {
 
 TEST(HardShapes, TheDyadicGridIsExactAndWithoutTJunctions) {
   for (const std::uint32_t count : {1u, 2u, 3u, 50u, 1001u, 10'000u}) {
-    const Scene scene = make("dyadic-grid", count);
+    const Scene scene = make_hard_case("dyadic-grid", count);
     for (const vec3 p : scene.positions) EXPECT_EQ(p * 256.0f, glm::floor(p * 256.0f));
     std::set<Place> places;
     for (const vec3 p : scene.positions) places.insert(place(p));
@@ -128,7 +124,7 @@ TEST(HardShapes, TheDyadicGridIsExactAndWithoutTJunctions) {
 TEST(HardShapes, IndicesRepeatWithinTriangles) {
   std::map<std::size_t, int> distinct;
   std::map<std::uint32_t, int> uses;
-  for (const glm::uvec3 t : make("repeated-indices", 1000).indices) {
+  for (const glm::uvec3 t : make_hard_case("repeated-indices", 1000).indices) {
     ++distinct[std::set{t.x, t.y, t.z}.size()];
     for (int corner = 0; corner < 3; ++corner) ++uses[t[corner]];
   }
@@ -137,7 +133,7 @@ TEST(HardShapes, IndicesRepeatWithinTriangles) {
 }
 
 TEST(HardShapes, PositionsRepeatUnderSeveralIndices) {
-  const Scene scene = make("repeated-positions", 1000);
+  const Scene scene = make_hard_case("repeated-positions", 1000);
   std::set<Place> places;
   for (const vec3 p : scene.positions) places.insert(place(p));
   EXPECT_EQ(scene.positions.size(), 3000u);

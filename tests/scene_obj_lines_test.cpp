@@ -26,20 +26,20 @@ TEST_F(ObjLines, ReadsContinuedLinesCommentsAndAByteOrderMark) {
   EXPECT_EQ(scene.indices, (std::vector<glm::uvec3>{{0, 1, 2}}));
 }
 
-using Triangles = std::vector<glm::uvec3>;
+using FaceCorners = std::vector<glm::uvec3>;
 
 TEST_F(ObjLines, EveryLineEndMayFollowABackslash) {
   for (const std::string end : {"\n", "\r\n", "\r", "\r\r\n", " \n", " \t\r\n"}) {
     const Scene scene = load(TRIANGLE + "v 1 \\" + end + "1\\" + end + " 0\nf 1 2 \\" + end + " 3\nf 2 4\\" +
                              end + "\\" + end + " 3\n");
-    EXPECT_EQ(scene.indices, (Triangles{{0, 1, 2}, {1, 3, 2}}));
+    EXPECT_EQ(scene.indices, (FaceCorners{{0, 1, 2}, {1, 3, 2}}));
     EXPECT_TRUE(scene.warnings.empty());
   }
 }
 
 TEST_F(ObjLines, ABackslashThatEndsTheFileContinuesNothing) {
   for (const std::string end : {"\\", "\\\n", " \\", "\\ ", "\\\r\n"}) {
-    EXPECT_EQ(load(TRIANGLE + "f 1 2 3" + end).indices, (Triangles{{0, 1, 2}}));
+    EXPECT_EQ(load(TRIANGLE + "f 1 2 3" + end).indices, (FaceCorners{{0, 1, 2}}));
   }
 }
 
@@ -50,7 +50,7 @@ TEST_F(ObjLines, ABackslashThatEndsACommentContinuesNothing) {
           load("v 0 0 0 " + comment + end + "v 1 0 0" + comment + end + "v 0 1 0" + end + comment + end +
                "v 1 1 0" + end + "g part " + comment + end + "f 1 2 3 " + comment + end + "f 2 4 3" +
                comment + end + "f 1 \\" + end + "2 4 " + comment + end + "f 1 4 3" + end);
-      EXPECT_EQ(scene.indices, (Triangles{{0, 1, 2}, {1, 3, 2}, {0, 1, 3}, {0, 3, 2}})) << comment;
+      EXPECT_EQ(scene.indices, (FaceCorners{{0, 1, 2}, {1, 3, 2}, {0, 1, 3}, {0, 3, 2}})) << comment;
       EXPECT_EQ(scene.positions.size(), 4u) << comment;
     }
   }
@@ -70,7 +70,7 @@ TEST_F(ObjLines, ZeroBytesThatPadTheFileAreNoText) {
 
 TEST_F(ObjLines, IndicesMayHaveAPlusSign) {
   EXPECT_EQ(load(TRIANGLE + "f +1 +2 +3\nf +2/+1 3//+1 -3/1/+1\n").indices,
-            (Triangles{{0, 1, 2}, {1, 2, 0}}));
+            (FaceCorners{{0, 1, 2}, {1, 2, 0}}));
   EXPECT_EQ(error_in(TRIANGLE + "f 1 2 +-3\n"), "bad.obj:4: '+-3' is no vertex index");
   EXPECT_EQ(error_in(TRIANGLE + "f 1 2 +\n"), "bad.obj:4: '+' is no vertex index");
   EXPECT_EQ(error_in(TRIANGLE + "f 1 2 ++3\n"), "bad.obj:4: '++3' is no vertex index");
@@ -78,7 +78,7 @@ TEST_F(ObjLines, IndicesMayHaveAPlusSign) {
 
 TEST_F(ObjLines, AFaceWithFewerThanThreeCornersIsLeftOut) {
   const Scene scene = load(TRIANGLE + "f 1 2 3\nf 1 2 # 3\nf\nf 3\nf 9 9\nf 3 2 1\n");
-  EXPECT_EQ(scene.indices, (Triangles{{0, 1, 2}, {2, 1, 0}}));
+  EXPECT_EQ(scene.indices, (FaceCorners{{0, 1, 2}, {2, 1, 0}}));
   EXPECT_EQ(
       warnings_of(scene),
       std::vector<std::string>{"scene.obj:5: face with fewer than three corners, left out; 4 such in all"});

@@ -31,14 +31,14 @@ TEST_F(ObjNames, ABrokenMaterialFileIsAWarningAndTheDefaultMaterial) {
 constexpr const char* RED = "newmtl red\nKd 0.8 0.1 0.1\n";
 constexpr const char* BLUE = "newmtl blue\nKd 0.1 0.1 0.8\n";
 
-using Names = std::vector<std::string>;
+using Strings = std::vector<std::string>;
 
 TEST_F(ObjNames, BlanksAboutANameDoNotCount) {
   write("m.mtl", "newmtl  red\r\nnewmtl\tblue \nnewmtl  dark green\t\n");
   const Scene scene =
       load("mtllib \t m.mtl  \n" + TRIANGLE +
            "usemtl red\nf 1 2 3\nusemtl   blue\nf 1 2 3\n\tusemtl \t dark green \r\nf 1 2 3\n");
-  EXPECT_EQ(names_of(scene), (Names{"red", "blue", "dark green"}));
+  EXPECT_EQ(names_of(scene), (Strings{"red", "blue", "dark green"}));
   EXPECT_TRUE(scene.warnings.empty());
 }
 
@@ -50,7 +50,7 @@ TEST_F(ObjNames, FileNamesMayHoldBlanks) {
         "\"m with  blank.mtl\" b.mtl", "m with  blank.mtl b.mtl # both"}) {
     const Scene scene =
         load("mtllib " + names + "\n" + TRIANGLE + "usemtl red\nf 1 2 3\nusemtl blue\nf 1 2 3\n");
-    EXPECT_EQ(names_of(scene), (Names{"red", "blue"})) << names;
+    EXPECT_EQ(names_of(scene), (Strings{"red", "blue"})) << names;
     EXPECT_TRUE(scene.warnings.empty()) << names;
   }
 }
@@ -59,7 +59,7 @@ TEST_F(ObjNames, SeveralFilesOfOneLineAreRead) {
   write("a", RED);
   write("b.mtl", BLUE);
   const Scene scene = load("mtllib a b.mtl\n" + TRIANGLE + "usemtl red\nf 1 2 3\nusemtl blue\nf 1 2 3\n");
-  EXPECT_EQ(names_of(scene), (Names{"red", "blue"}));
+  EXPECT_EQ(names_of(scene), (Strings{"red", "blue"}));
   EXPECT_TRUE(scene.warnings.empty());
 }
 
@@ -68,7 +68,7 @@ TEST_F(ObjNames, BackslashesSeparateFolders) {
   write("tex/sub dir/m.mtl", RED);
   for (const std::string name : {"tex\\sub dir\\m.mtl", ".\\tex\\sub dir\\m.mtl", "tex/sub dir\\m.mtl"}) {
     const Scene scene = load("mtllib " + name + "\n" + TRIANGLE + "usemtl red\nf 1 2 3\n");
-    EXPECT_EQ(names_of(scene), Names{"red"}) << name;
+    EXPECT_EQ(names_of(scene), Strings{"red"}) << name;
     EXPECT_TRUE(scene.warnings.empty()) << name;
   }
 }
@@ -77,10 +77,10 @@ TEST_F(ObjNames, OtherLetterCaseIsFoundAndSaidOnce) {
   std::filesystem::create_directory(folder_ / "Tex");
   write("Tex/Red.mtl", RED);
   const Scene scene = load("mtllib tex/RED.MTL\n" + TRIANGLE + "usemtl Red\nf 1 2 3\nusemtl RED\nf 1 2 3\n");
-  EXPECT_EQ(names_of(scene), (Names{"red", "red"}));
+  EXPECT_EQ(names_of(scene), (Strings{"red", "red"}));
   EXPECT_EQ(warnings_of(scene),
-            (Names{"scene.obj:1: material file 'tex/RED.MTL' not found, 'Tex/Red.mtl' is used",
-                   "scene.obj:5: material 'Red' not found, 'red' is used; 2 such in all"}));
+            (Strings{"scene.obj:1: material file 'tex/RED.MTL' not found, 'Tex/Red.mtl' is used",
+                     "scene.obj:5: material 'Red' not found, 'red' is used; 2 such in all"}));
 }
 
 TEST_F(ObjNames, AFolderAsWrittenDoesNotHideOneInOtherCase) {
@@ -88,9 +88,9 @@ TEST_F(ObjNames, AFolderAsWrittenDoesNotHideOneInOtherCase) {
   std::filesystem::create_directory(folder_ / "Mats");
   write("Mats/red.mtl", RED);
   const Scene scene = load("mtllib mats/red.mtl\n" + TRIANGLE + "usemtl red\nf 1 2 3\n");
-  EXPECT_EQ(names_of(scene), Names{"red"});
+  EXPECT_EQ(names_of(scene), Strings{"red"});
   EXPECT_EQ(warnings_of(scene),
-            Names{"scene.obj:1: material file 'mats/red.mtl' not found, 'Mats/red.mtl' is used"});
+            Strings{"scene.obj:1: material file 'mats/red.mtl' not found, 'Mats/red.mtl' is used"});
 }
 
 // Each of 64 steps may mean two folders, but all lead back to one.
@@ -101,21 +101,21 @@ TEST_F(ObjNames, StepsIntoFoldersAndOutAgainLeadToOnePlace) {
   std::string name;
   for (int i = 0; i < 64; ++i) name += "tex/../";
   const Scene scene = load(TRIANGLE + "mtllib " + name + "red.mtl\nusemtl red\nf 1 2 3\n");
-  EXPECT_EQ(names_of(scene), Names{"red"});
+  EXPECT_EQ(names_of(scene), Strings{"red"});
 }
 
 TEST_F(ObjNames, TheFileBesideMayBeInOtherCase) {
   write("Scene.MTL", RED);
   const Scene scene = load(TRIANGLE + "usemtl red\nf 1 2 3\n");
-  EXPECT_EQ(names_of(scene), Names{"red"});
-  EXPECT_EQ(warnings_of(scene), Names{"scene.obj:4: no mtllib in the file, 'Scene.MTL' is used"});
+  EXPECT_EQ(names_of(scene), Strings{"red"});
+  EXPECT_EQ(warnings_of(scene), Strings{"scene.obj:4: no mtllib in the file, 'Scene.MTL' is used"});
 }
 
 TEST_F(ObjNames, TheSameLettersWinOverOtherCase) {
   write("m.mtl", std::string(RED) + "newmtl Red\nKd 0 0 1\nnewmtl RED\nKd 0 1 0\n");
   const Scene scene =
       load("mtllib m.mtl\n" + TRIANGLE + "usemtl RED\nf 1 2 3\nusemtl red\nf 1 2 3\nusemtl Red\nf 1 2 3\n");
-  EXPECT_EQ(names_of(scene), (Names{"RED", "red", "Red"}));
+  EXPECT_EQ(names_of(scene), (Strings{"RED", "red", "Red"}));
   EXPECT_TRUE(scene.warnings.empty());
 }
 
@@ -124,7 +124,7 @@ TEST_F(ObjNames, ANumberBehindAHashIsPartOfTheName) {
   const Scene scene =
       load("mtllib m.mtl # here\n" + TRIANGLE +
            "usemtl Material #25\nf 1 2 3\nusemtl red # too\nf 1 2 3\nusemtl Material #26\nf 1 2 3\n");
-  EXPECT_EQ(names_of(scene), (Names{"Material #25", "red # of the door", "default"}));
+  EXPECT_EQ(names_of(scene), (Strings{"Material #25", "red # of the door", "default"}));
 }
 
 TEST_F(ObjNames, TheBareNameOfAPathElsewhereIsFoundBesideTheObj) {
@@ -132,21 +132,21 @@ TEST_F(ObjNames, TheBareNameOfAPathElsewhereIsFoundBesideTheObj) {
   for (const std::string path :
        {"C:\\Users\\me\\My Part.mtl", "/nowhere/at all/My Part.mtl", "../lost/my part.MTL"}) {
     const Scene scene = load("mtllib " + path + "\n" + TRIANGLE + "usemtl red\nf 1 2 3\n");
-    EXPECT_EQ(names_of(scene), Names{"red"}) << path;
+    EXPECT_EQ(names_of(scene), Strings{"red"}) << path;
     EXPECT_EQ(warnings_of(scene),
-              Names{"scene.obj:1: material file '" + path + "' not found, 'My Part.mtl' is used"});
+              Strings{"scene.obj:1: material file '" + path + "' not found, 'My Part.mtl' is used"});
   }
 }
 
 TEST_F(ObjNames, TheStemBesideTheObjTakesThePlaceOfWhatIsMissing) {
   write("scene.mtl", RED);
   const Scene renamed = load("mtllib untitled.mtl\n" + TRIANGLE + "usemtl red\nf 1 2 3\n");
-  EXPECT_EQ(names_of(renamed), Names{"red"});
+  EXPECT_EQ(names_of(renamed), Strings{"red"});
   EXPECT_EQ(warnings_of(renamed),
-            Names{"scene.obj:1: material file 'untitled.mtl' not found, 'scene.mtl' is used"});
+            Strings{"scene.obj:1: material file 'untitled.mtl' not found, 'scene.mtl' is used"});
   const Scene unnamed = load(TRIANGLE + "usemtl red\nf 1 2 3\n");
-  EXPECT_EQ(names_of(unnamed), Names{"red"});
-  EXPECT_EQ(warnings_of(unnamed), Names{"scene.obj:4: no mtllib in the file, 'scene.mtl' is used"});
+  EXPECT_EQ(names_of(unnamed), Strings{"red"});
+  EXPECT_EQ(warnings_of(unnamed), Strings{"scene.obj:4: no mtllib in the file, 'scene.mtl' is used"});
   EXPECT_TRUE(load(TRIANGLE + "f 1 2 3\n").warnings.empty());
 }
 
@@ -154,7 +154,7 @@ TEST_F(ObjNames, AMaterialMayBeUsedBeforeItsFileIsNamed) {
   write("m.mtl", RED);
   const Scene scene =
       load("g part\nusemtl red\n" + TRIANGLE + "f 1 2 3\nmtllib m.mtl\nf 1 2 3\nusemtl red\nf 1 2 3\n");
-  EXPECT_EQ(names_of(scene), (Names{"red", "red", "red"}));
+  EXPECT_EQ(names_of(scene), (Strings{"red", "red", "red"}));
   EXPECT_TRUE(scene.warnings.empty());
 }
 
@@ -163,7 +163,7 @@ TEST_F(ObjNames, ByteOrderMarksAreNoPartOfAName) {
   write("m.mtl", mark + RED + mark + BLUE);
   const Scene scene =
       load(mark + "mtllib m.mtl\n" + TRIANGLE + "usemtl red\nf 1 2 3\nusemtl blue\nf 1 2 3\n");
-  EXPECT_EQ(names_of(scene), (Names{"red", "blue"}));
+  EXPECT_EQ(names_of(scene), (Strings{"red", "blue"}));
   EXPECT_TRUE(scene.warnings.empty());
 }
 
@@ -174,7 +174,7 @@ TEST_F(ObjNames, TheFirstDefinitionOfAMaterialCounts) {
   EXPECT_EQ(scene.materials.size(), 3u);
   EXPECT_EQ(scene.materials[1].diffuse, glm::vec3(0.8f, 0.1f, 0.1f));
   EXPECT_EQ(warnings_of(scene),
-            Names{"b.mtl: material 'red' is defined again, the first definition is used"});
+            Strings{"b.mtl: material 'red' is defined again, the first definition is used"});
 }
 
 // By the number of times that a file is asked for, not by the time it takes.

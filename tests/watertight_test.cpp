@@ -18,6 +18,7 @@
 #include "builders/ploc.h"
 #include "scene/hard_cases.h"
 #include "stages/stages.h"
+#include "support/floor.h"
 #include "support/random_scenes.h"
 #include "support/triangles.h"
 #include "twins/error_free.h"
@@ -25,8 +26,6 @@
 
 namespace coppice {
 namespace {
-
-const float INFINITE = std::numeric_limits<float>::infinity();
 
 Hit miss_of(const Ray& ray) { return {ray.t_max, NO_TRIANGLE, 0, 0}; }
 

@@ -32,12 +32,13 @@ bool is_finite(const Triangle& triangle) {
   return true;
 }
 
-std::string name(std::size_t node) { return "node " + std::to_string(node); }
+std::string node_name(std::size_t node) { return "node " + std::to_string(node); }
 std::string triangle_name(std::size_t index) { return "triangle " + std::to_string(index); }
 
-class Validation {
+class TreeValidation {
  public:
-  Validation(std::span<const Node> nodes, std::span<const Triangle> triangles, const TreePromises& promises)
+  TreeValidation(std::span<const Node> nodes, std::span<const Triangle> triangles,
+                 const TreePromises& promises)
       : nodes_(nodes),
         triangles_(triangles),
         promises_(promises),
@@ -49,7 +50,7 @@ class Validation {
     if (nodes_.empty()) return find_in_triangles();
     if (Fault fault = find_in_nodes()) return fault;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      if (!reached_[i]) return name(i) + " is not reached from the root";
+      if (!reached_[i]) return node_name(i) + " is not reached from the root";
     }
     if (Fault fault = find_in_triangles()) return fault;
     if (nodes_.size() != 2 * leaf_count_ - 1) {
@@ -68,17 +69,18 @@ class Validation {
       const Node& node = nodes_[index];
       // Not `box_min > box_max`: a NaN must fail too.
       if (!glm::all(glm::lessThanEqual(node.box_min, node.box_max))) {
-        return name(index) + " has a box with a NaN or with box_min > box_max";
+        return node_name(index) + " has a box with a NaN or with box_min > box_max";
       }
       if (node.height == 0) {
         if (Fault fault = find_in_leaf(index)) return fault;
         continue;
       }
       if (node.child >= nodes_.size() - 1) {
-        return name(index) + " has a child index out of range: " + std::to_string(node.child);
+        return node_name(index) + " has a child index out of range: " + std::to_string(node.child);
       }
       for (const std::uint32_t child : {node.child + 1, node.child}) {
-        if (reached_[child]) return name(child) + " is reached twice, the second time from " + name(index);
+        if (reached_[child])
+          return node_name(child) + " is reached twice, the second time from " + node_name(index);
         reached_[child] = 1;
         stack.push_back(child);
       }
@@ -90,11 +92,11 @@ class Validation {
   Fault find_in_leaf(std::uint32_t index) {
     const Node& node = nodes_[index];
     if (node.child >= triangles_.size()) {
-      return name(index) + " holds triangle " + std::to_string(node.child) + " of " +
+      return node_name(index) + " holds triangle " + std::to_string(node.child) + " of " +
              std::to_string(triangles_.size());
     }
     const Triangle& triangle = triangles_[node.child];
-    if (!is_finite(triangle)) return name(index) + " holds inactive " + triangle_name(node.child);
+    if (!is_finite(triangle)) return node_name(index) + " holds inactive " + triangle_name(node.child);
     if (++leaves_[node.child] > 1 && !promises_.splits_triangles) {
       return triangle_name(node.child) + " is in more than one leaf";
     }
@@ -104,12 +106,12 @@ class Validation {
     }
     if (!promises_.splits_triangles) {
       if (corners_[node.child] != ALL_CORNERS) {
-        return name(index) + " has a box that does not contain " + triangle_name(node.child);
+        return node_name(index) + " has a box that does not contain " + triangle_name(node.child);
       }
       const vec3 box_min = glm::min(glm::min(triangle.a, triangle.b), triangle.c);
       const vec3 box_max = glm::max(glm::max(triangle.a, triangle.b), triangle.c);
       if (promises_.tight_boxes && (node.box_min != box_min || node.box_max != box_max)) {
-        return name(index) + " has a box larger than that of " + triangle_name(node.child);
+        return node_name(index) + " has a box larger than that of " + triangle_name(node.child);
       }
     }
     ++leaf_count_;
@@ -121,17 +123,17 @@ class Validation {
     const Node& first = nodes_[node.child];
     const Node& second = nodes_[node.child + 1];
     if (node.height != 1 + std::uint64_t{std::max(first.height, second.height)}) {
-      return name(index) + " has height " + std::to_string(node.height) + " above heights " +
+      return node_name(index) + " has height " + std::to_string(node.height) + " above heights " +
              std::to_string(first.height) + " and " + std::to_string(second.height);
     }
     for (const std::uint32_t child : {node.child, node.child + 1}) {
       if (!contains(node, nodes_[child])) {
-        return name(index) + " has a box that does not contain that of its child, " + name(child);
+        return node_name(index) + " has a box that does not contain that of its child, " + node_name(child);
       }
     }
     if (promises_.tight_boxes && (node.box_min != glm::min(first.box_min, second.box_min) ||
                                   node.box_max != glm::max(first.box_max, second.box_max))) {
-      return name(index) + " has a box larger than the union of its children's";
+      return node_name(index) + " has a box larger than the union of its children's";
     }
     return {};
   }
@@ -160,7 +162,7 @@ class Validation {
 
 std::optional<std::string> find_fault(std::span<const Node> nodes, std::span<const Triangle> triangles,
                                       const TreePromises& promises) {
-  return Validation(nodes, triangles, promises).find();
+  return TreeValidation(nodes, triangles, promises).find();
 }
 
 }  // namespace coppice

@@ -46,14 +46,14 @@ double half_area(const Aabb& box) {
   return extent.x * extent.y + extent.y * extent.z + extent.z * extent.x;
 }
 
-std::string name(std::size_t node) { return "wide node " + std::to_string(node); }
-std::string name(std::size_t node, uint child) {
-  return "child " + std::to_string(child) + " of " + name(node);
+std::string wide_name(std::size_t node) { return "wide node " + std::to_string(node); }
+std::string wide_name(std::size_t node, uint child) {
+  return "child " + std::to_string(child) + " of " + wide_name(node);
 }
 
-class Validation {
+class WideValidation {
  public:
-  Validation(std::span<const WideNode> wide_nodes, std::span<const Node> nodes)
+  WideValidation(std::span<const WideNode> wide_nodes, std::span<const Node> nodes)
       : wide_(wide_nodes), boxes_(wide_nodes.size(), nothing) {
     for (const Node& node : nodes) {
       if (node.height != 0) continue;
@@ -91,18 +91,19 @@ class Validation {
     std::vector<Open> stack;
     if (!wide_.empty()) stack.push_back({0, 1});
     for (std::size_t expected = 0; expected < wide_.size(); ++expected) {
-      if (stack.empty()) return name(expected) + " is not reached from the root";
+      if (stack.empty()) return wide_name(expected) + " is not reached from the root";
       const Open open = stack.back();
       stack.pop_back();
       if (open.node != expected)
-        return name(open.node) + " is the next in depth-first order, not " + std::to_string(expected);
-      if (open.level > std::max(binary_height_, 1u)) return name(expected) + " lies below all binary nodes";
+        return wide_name(open.node) + " is the next in depth-first order, not " + std::to_string(expected);
+      if (open.level > std::max(binary_height_, 1u))
+        return wide_name(expected) + " lies below all binary nodes";
       if (Fault fault = find_in_children(expected)) return fault;
       for (uint c = child_count(wide_[expected]); c-- > 0;) {
         if (is_wide(wide_[expected].child[c])) stack.push_back({wide_[expected].child[c], open.level + 1});
       }
     }
-    if (!stack.empty()) return name(stack.back().node) + " is not there";
+    if (!stack.empty()) return wide_name(stack.back().node) + " is not there";
     return {};
   }
 
@@ -112,22 +113,22 @@ class Validation {
     bool wide_child = false;
     for (uint c = 0; c < WIDE_CHILDREN; ++c) {
       if (c >= count) {
-        if (node.child[c] != WIDE_EMPTY) return name(index, c) + " stands behind an empty one";
-        if (!is_inverted(node, c)) return name(index, c) + " is empty and has a box";
+        if (node.child[c] != WIDE_EMPTY) return wide_name(index, c) + " stands behind an empty one";
+        if (!is_inverted(node, c)) return wide_name(index, c) + " is empty and has a box";
         continue;
       }
       wide_child |= is_wide(node.child[c]);
       if (is_wide(node.child[c])) continue;
       const uint triangle = node.child[c] - WIDE_LEAF;
       if (triangle >= leaves_.size() || leaves_[triangle].uses == 0)
-        return name(index, c) + " is triangle " + std::to_string(triangle) +
+        return wide_name(index, c) + " is triangle " + std::to_string(triangle) +
                ", which the binary tree has not";
       if (leaves_[triangle].uses++ > 1)
         return "triangle " + std::to_string(triangle) + " is in more than one leaf";
     }
-    if (count < std::min<std::size_t>(2, leaf_count_)) return name(index) + " has too few children";
+    if (count < std::min<std::size_t>(2, leaf_count_)) return wide_name(index) + " has too few children";
     if (wide_child && count < WIDE_LEAST_CHILDREN)
-      return name(index) + " has a child that had room to be opened";
+      return wide_name(index) + " has a child that had room to be opened";
     return {};
   }
 
@@ -136,7 +137,7 @@ class Validation {
       const uint child = wide_[index].child[c];
       const Aabb below = is_wide(child) ? boxes_[child] : leaves_[child - WIDE_LEAF].box;
       if (!contains(decoded_box(wide_[index], c), below))
-        return name(index, c) + " has a box that does not contain what is below it";
+        return wide_name(index, c) + " has a box that does not contain what is below it";
       boxes_[index] = united(boxes_[index], below);
     }
     return find_unopened(index);
@@ -149,7 +150,7 @@ class Validation {
     if (child_count(node) == WIDE_CHILDREN) return {};
     for (uint c = 0; c < child_count(node); ++c) {
       if (is_wide(node.child[c]) && !(half_area(boxes_[node.child[c]]) <= small))
-        return name(index) + " has a child that had room to be opened";
+        return wide_name(index) + " has a child that had room to be opened";
     }
     return {};
   }
@@ -178,7 +179,7 @@ Aabb decoded_box(const WideNode& node, uint child) {
 
 std::optional<std::string> find_wide_fault(std::span<const WideNode> wide_nodes,
                                            std::span<const Node> nodes) {
-  return Validation(wide_nodes, nodes).find();
+  return WideValidation(wide_nodes, nodes).find();
 }
 
 double WideQuality::children_per_node() const {

@@ -14,8 +14,6 @@ namespace coppice {
 
 namespace {
 
-constexpr double limit_seconds = 120;
-
 std::string scatter_of(std::uint32_t count) { return "scatter:" + std::to_string(count); }
 
 // A build of scattered triangles on the device, done once and found right.
@@ -30,7 +28,7 @@ class CheckedBuild {
     Chain chain = executor_.chain();
     append_build(chain, plan_);
     steps_ = chain.steps();
-    executor_.record(steps_).submit_and_wait(limit_seconds);
+    executor_.record(steps_).submit_and_wait(measured_limit_seconds);
     check_state(executor_, plan_);
     const Bvh expected = find_cpu_builder(builder.cpu_builder)
                              .build(arrays_.triangles, {options.radius, plan_.options.morton_bits});
@@ -71,10 +69,10 @@ BenchRow bench_builder(CheckedDevice& device, const Options& options, const Name
                        std::uint32_t count) {
   CheckedBuild build(device, options, builder, count);
   Recorder recorder = build.executor().record(build.steps());
-  const auto run = [&] { return recorder.submit_and_wait(limit_seconds).total_ms; };
+  const auto run = [&] { return recorder.submit_and_wait(measured_limit_seconds).total_ms; };
   BenchRow row = bench_row(std::string(builder.name), "scatter", count,
                            measure_steady(steady_options(options, run()), run));
-  const KernelSplit split = split_time(build.executor(), build.steps(), limit_seconds);
+  const KernelSplit split = split_time(build.executor(), build.steps(), measured_limit_seconds);
   const KernelSums sums(split, build.counts());
   row.kernels = kernel_table(sums, find_copy_limit(device.device, sums.largest_dispatch()), row.ms.median);
   const double scratch = static_cast<double>(build.scratch_bytes()) / count;
@@ -100,16 +98,16 @@ BenchRow bench_rounds(CheckedDevice& device, const Options& options, std::uint32
     throw DeviceError("bench ploc: " + device.device.properties().name +
                       " has no timestamps, which tell the rounds from the rest of a build");
   CheckedBuild build(device, options, *find_device_builder("gpu-ploc"), count);
-  const std::vector<Step> needed = split_time(build.executor(), build.steps(), limit_seconds).steps;
+  const std::vector<Step> needed = split_time(build.executor(), build.steps(), measured_limit_seconds).steps;
   Recorder whole = build.executor().record(with_mark(build.steps()));
   Recorder lean = build.executor().record(with_mark(needed));
   std::vector<double> whole_ms, empty_ms;
   const auto run = [&] {
     // In turns, and either first, so that both meet the same machine.
     const bool whole_first = whole_ms.size() % 2 == 0;
-    const double before_ms = whole_first ? 0 : lean.submit_and_wait(limit_seconds).total_ms;
-    const Recorder::Times times = whole.submit_and_wait(limit_seconds);
-    const double lean_ms = whole_first ? lean.submit_and_wait(limit_seconds).total_ms : before_ms;
+    const double before_ms = whole_first ? 0 : lean.submit_and_wait(measured_limit_seconds).total_ms;
+    const Recorder::Times times = whole.submit_and_wait(measured_limit_seconds);
+    const double lean_ms = whole_first ? lean.submit_and_wait(measured_limit_seconds).total_ms : before_ms;
     whole_ms.push_back(times.total_ms);
     empty_ms.push_back(times.total_ms - lean_ms);
     return times.total_ms - times.marks_ms.at(0);

@@ -10,7 +10,7 @@ namespace coppice {
 
 namespace {
 
-std::string number(double value) {
+std::string csv_number(double value) {
   char text[40];
   std::snprintf(text, sizeof text, "%.9g", value);
   return text;
@@ -69,13 +69,13 @@ std::string bench_csv(const std::vector<BenchRow>& rows, const DeviceProperties&
   for (const BenchRow& row : rows) {
     csv += "\n" + quoted(row.name) + "," + quoted(row.input) + "," + std::to_string(row.size);
     for (const double value : {row.ms.median, row.ms.least, row.ms.greatest, row.millions_per_s()})
-      csv += "," + number(value);
+      csv += "," + csv_number(value);
     for (const std::uint32_t count : {row.runs, row.warm_up_runs, std::uint32_t{row.stable}})
       csv += "," + std::to_string(count);
     const auto columns = own_columns(row);
     for (const std::string& name : names) {
       const auto column = std::ranges::find(columns, name, &std::pair<std::string, double>::first);
-      csv += column == columns.end() ? "," : "," + number(column->second);
+      csv += column == columns.end() ? "," : "," + csv_number(column->second);
     }
     csv += origin;
   }

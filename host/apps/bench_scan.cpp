@@ -12,8 +12,6 @@ namespace coppice {
 
 namespace {
 
-constexpr double limit_seconds = 120;
-
 double scan_on_host(const std::vector<uint>& words, std::vector<uint>& sums) {
   const auto start = std::chrono::steady_clock::now();
   std::exclusive_scan(words.begin(), words.end(), sums.begin(), 0u);
@@ -31,7 +29,7 @@ BenchRow bench_words(CheckedDevice& device, const Options& options, std::uint32_
   Chain chain = executor.chain();
   append_scan(chain, plan);
   Recorder recorder = executor.record(chain.steps());
-  recorder.submit_and_wait(limit_seconds);
+  recorder.submit_and_wait(measured_limit_seconds);
   const std::string error = describe_error_word(executor.read(plan.state)[0].error_word);
   if (!error.empty()) throw DeviceError(error);
   scan_on_host(words, expected);
@@ -42,7 +40,7 @@ BenchRow bench_words(CheckedDevice& device, const Options& options, std::uint32_
   std::vector<double> host_ms;
   const auto run = [&] {
     host_ms.push_back(scan_on_host(words, expected));
-    return recorder.submit_and_wait(limit_seconds).total_ms;
+    return recorder.submit_and_wait(measured_limit_seconds).total_ms;
   };
   const SteadyTime time = measure_steady(steady_options(options, run()), run);
   BenchRow row = bench_row("scan", "random", count, time);

@@ -6,6 +6,7 @@
 
 #include "analysis/tree_hash.h"
 #include "apps/progress.h"
+#include "apps/steady_state.h"
 #include "builders/morton_crowding.h"
 #include "builders/registry.h"
 #include "stages/errors.h"
@@ -72,18 +73,16 @@ void count_wide(const GpuExecutor& executor, const TreeSlots& tree, const WidePl
 
 namespace {
 
-constexpr double limit_seconds = 120;
-
 // Converts the tree of the last submit options.runs times after a warm-up.
 void measure_wide(GpuExecutor& executor, const TreeSlots& tree, const WidePlan& wide, BuildReport& report,
                   std::uint32_t runs) {
   Chain chain = executor.chain();
   append_wide(chain, tree, wide);
   Recorder recorder = executor.record(chain.steps());
-  recorder.submit_and_wait(limit_seconds);  // compiles the kernels
+  recorder.submit_and_wait(measured_limit_seconds);  // compiles the kernels
   std::vector<double> wide_ms;
   for (std::uint32_t run = 0; run < runs; ++run)
-    wide_ms.push_back(recorder.submit_and_wait(limit_seconds).total_ms);
+    wide_ms.push_back(recorder.submit_and_wait(measured_limit_seconds).total_ms);
   check_state(executor, tree);
   report.wide_ms = spread_of(wide_ms);
   report.wide = measure_wide_quality(read_wide_tree(executor, tree));
@@ -97,12 +96,12 @@ BuildReport measure_gpu_build(CheckedDevice& device, GpuExecutor& executor, cons
   append_build(chain, plan);
   Recorder recorder = executor.record(chain.steps());
   Progress progress("building", options.runs + 2);
-  recorder.submit_and_wait(limit_seconds);  // compiles the kernels
+  recorder.submit_and_wait(measured_limit_seconds);  // compiles the kernels
   progress.step();
   report.tree_hash = tree_hash(read_tree(executor, plan));
   std::vector<double> build_ms, wall_ms;
   for (std::uint32_t run = 0; run < options.runs; ++run) {
-    const Recorder::Times times = recorder.submit_and_wait(limit_seconds);
+    const Recorder::Times times = recorder.submit_and_wait(measured_limit_seconds);
     build_ms.push_back(times.total_ms);
     wall_ms.push_back(times.wall_ms);
     if (tree_hash(read_tree(executor, plan)) != report.tree_hash) {
@@ -117,7 +116,7 @@ BuildReport measure_gpu_build(CheckedDevice& device, GpuExecutor& executor, cons
     untimed_ms += report.wide_ms.median;
     append_wide(chain, plan, *wide);
   }
-  const KernelSplit split = split_time(executor, chain.steps(), limit_seconds);
+  const KernelSplit split = split_time(executor, chain.steps(), measured_limit_seconds);
   TraceEvents events;
   events.add(split);
   events.write(options.trace_events);

@@ -22,6 +22,9 @@ struct SteadyOptions {
   double most_warm_up_ms = 4000;         // then the batch is ended, and no other one begun
 };
 
+// No measured submit may take longer: the program ends then, with one line.
+inline constexpr double measured_limit_seconds = 120;
+
 inline double median_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);

@@ -14,7 +14,7 @@ namespace coppice {
 namespace {
 
 // Leaves that a thread takes at a time.
-constexpr std::size_t CHUNK = 1 << 12;
+constexpr std::size_t LBVH_CHUNK = 1 << 12;
 
 // Split s separates the leaves at places s and s + 1. It names the internal node that it splits: the children
 // stand at 1 + 2s and 2 + 2s, so that neighbours in space are neighbours in memory.
@@ -27,13 +27,13 @@ class RadixTree {
     const std::size_t splits = leaves_.count() - 1;
     differences_.resize(splits);
     far_ends_ = std::make_unique_for_overwrite<std::atomic<std::uint32_t>[]>(splits);
-    threads_.for_each_chunk(splits, CHUNK, [&](Chunk chunk, std::size_t) {
+    threads_.for_each_chunk(splits, LBVH_CHUNK, [&](Chunk chunk, std::size_t) {
       for (std::size_t s = chunk.begin; s < chunk.end; ++s) {
         differences_[s] = difference_at(static_cast<std::uint32_t>(s));
         far_ends_[s].store(NONE, std::memory_order_relaxed);
       }
     });
-    threads_.for_each_chunk(leaves_.count(), CHUNK, [&](Chunk chunk, std::size_t) {
+    threads_.for_each_chunk(leaves_.count(), LBVH_CHUNK, [&](Chunk chunk, std::size_t) {
       for (std::size_t i = chunk.begin; i < chunk.end; ++i) climb_from(static_cast<std::uint32_t>(i));
     });
   }

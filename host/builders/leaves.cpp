@@ -10,7 +10,7 @@
 namespace coppice {
 namespace {
 
-constexpr std::size_t CHUNK = 1 << 14;
+constexpr std::size_t LEAVES_CHUNK = 1 << 14;
 
 const Aabb EMPTY_BOX = {vec3(std::numeric_limits<float>::infinity()),
                         vec3(-std::numeric_limits<float>::infinity())};
@@ -41,8 +41,8 @@ std::vector<Node> make_leaves(std::span<const Triangle> triangles, const Threads
   if (triangles.size() > std::size_t{1} << 31) throw std::length_error("more than 2^31 triangles");
   std::vector<Node> leaves(triangles.size());
   // Each chunk puts its leaves to where they are if every triangle before is active; mostly that is final.
-  std::vector<std::size_t> counts(chunk_count(triangles.size(), CHUNK));
-  threads.for_each_chunk(triangles.size(), CHUNK, [&](Chunk chunk, std::size_t k) {
+  std::vector<std::size_t> counts(chunk_count(triangles.size(), LEAVES_CHUNK));
+  threads.for_each_chunk(triangles.size(), LEAVES_CHUNK, [&](Chunk chunk, std::size_t k) {
     std::size_t next = chunk.begin;
     for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
       if (!is_active(triangles[i])) continue;
@@ -53,7 +53,7 @@ std::vector<Node> make_leaves(std::span<const Triangle> triangles, const Threads
   });
   std::size_t active_count = 0;
   for (std::size_t k = 0; k < counts.size(); ++k) {
-    const auto first = leaves.begin() + static_cast<std::ptrdiff_t>(k * CHUNK);
+    const auto first = leaves.begin() + static_cast<std::ptrdiff_t>(k * LEAVES_CHUNK);
     const auto place = leaves.begin() + static_cast<std::ptrdiff_t>(active_count);
     if (place != first) std::copy(first, first + static_cast<std::ptrdiff_t>(counts[k]), place);
     active_count += counts[k];
@@ -69,8 +69,8 @@ Aabb bounds_of(std::span<const Node> nodes) {
 }
 
 Aabb bounds_of(std::span<const Node> nodes, const Threads& threads) {
-  std::vector<Aabb> bounds(chunk_count(nodes.size(), CHUNK));
-  threads.for_each_chunk(nodes.size(), CHUNK, [&](Chunk chunk, std::size_t k) {
+  std::vector<Aabb> bounds(chunk_count(nodes.size(), LEAVES_CHUNK));
+  threads.for_each_chunk(nodes.size(), LEAVES_CHUNK, [&](Chunk chunk, std::size_t k) {
     bounds[k] = bounds_of(nodes.subspan(chunk.begin, chunk.count()));
   });
   Aabb all = EMPTY_BOX;

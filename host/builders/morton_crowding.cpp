@@ -14,7 +14,7 @@
 namespace coppice {
 namespace {
 
-constexpr std::size_t CHUNK = 1 << 13;
+constexpr std::size_t CROWDING_CHUNK = 1 << 13;
 
 struct ActiveTriangles {
   Aabb box;
@@ -60,8 +60,8 @@ ActiveTriangles active_triangles(std::span<const Triangle> triangles) {
 }
 
 ActiveTriangles active_triangles(std::span<const Triangle> triangles, const Threads& threads) {
-  std::vector<ActiveTriangles> parts(chunk_count(triangles.size(), CHUNK));
-  threads.for_each_chunk(triangles.size(), CHUNK, [&](Chunk chunk, std::size_t k) {
+  std::vector<ActiveTriangles> parts(chunk_count(triangles.size(), CROWDING_CHUNK));
+  threads.for_each_chunk(triangles.size(), CROWDING_CHUNK, [&](Chunk chunk, std::size_t k) {
     parts[k] = active_triangles(triangles.subspan(chunk.begin, chunk.count()));
   });
   ActiveTriangles all{bounds_of({})};

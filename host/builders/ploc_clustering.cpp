@@ -9,7 +9,7 @@ namespace coppice {
 namespace {
 
 // Clusters that a thread takes at a time.
-constexpr std::size_t CHUNK = 16 * ClusterBoxes::TILE;
+constexpr std::size_t PLOC_CHUNK = 16 * ClusterBoxes::TILE;
 
 }  // namespace
 
@@ -20,7 +20,7 @@ PlocClustering::PlocClustering(MortonLeaves leaves, std::uint32_t radius, const 
       boxes_(count_, radius),
       next_boxes_(0, radius),
       nearest_(std::make_unique_for_overwrite<std::uint32_t[]>(count_)) {
-  threads.for_each_chunk(count_, CHUNK, [&](Chunk chunk, std::size_t) {
+  threads.for_each_chunk(count_, PLOC_CHUNK, [&](Chunk chunk, std::size_t) {
     for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
       const Node& leaf = leaves.leaf(i);
       clusters_[i] = leaf;
@@ -35,7 +35,7 @@ PlocClustering::PlocClustering(MortonLeaves leaves, std::uint32_t radius, const 
 }
 
 std::size_t PlocClustering::merge_nearest() {
-  threads_.for_each_chunk(count_, CHUNK, [&](Chunk chunk, std::size_t) {
+  threads_.for_each_chunk(count_, PLOC_CHUNK, [&](Chunk chunk, std::size_t) {
     boxes_.find_nearest(chunk, {nearest_.get(), count_});
   });
   return merge_mutual();
@@ -53,8 +53,8 @@ std::vector<Node> PlocClustering::take_nodes() {
 }
 
 std::size_t PlocClustering::merge_mutual() {
-  std::vector<MergeCounts> before(chunk_count(count_, CHUNK));
-  threads_.for_each_chunk(count_, CHUNK,
+  std::vector<MergeCounts> before(chunk_count(count_, PLOC_CHUNK));
+  threads_.for_each_chunk(count_, PLOC_CHUNK,
                           [&](Chunk chunk, std::size_t k) { before[k] = count_merges(chunk); });
   MergeCounts sum;
   for (MergeCounts& counts : before) {
@@ -62,7 +62,8 @@ std::size_t PlocClustering::merge_mutual() {
     sum.retired += own.retired;
     sum.merged += own.merged;
   }
-  threads_.for_each_chunk(count_, CHUNK, [&](Chunk chunk, std::size_t k) { merge_chunk(chunk, before[k]); });
+  threads_.for_each_chunk(count_, PLOC_CHUNK,
+                          [&](Chunk chunk, std::size_t k) { merge_chunk(chunk, before[k]); });
   next_child_ -= 2 * sum.merged;
   count_ -= sum.retired;
   next_boxes_.shrink(count_);

@@ -20,7 +20,7 @@ namespace coppice {
 namespace {
 
 // Nodes of more references are split by all threads together, the subtrees below are each built by one.
-constexpr std::size_t SHARED_COUNT = 1 << 14;
+constexpr std::size_t SHARED_REFERENCES = 1 << 14;
 // A link with this bit leads to a leaf.
 constexpr std::uint32_t LEAF_BIT = 1u << 31;
 
@@ -72,7 +72,7 @@ class ReferenceTree {
   void split_all(std::span<const Reference> leaves, std::uint32_t capacity) {
     uppers_.push_back({{leaves, 0, capacity, 0, 0, false}});
     for (std::uint32_t i = 0; i < uppers_.size(); ++i) {
-      if (uppers_[i].subtree.references.size() <= SHARED_COUNT) {
+      if (uppers_[i].subtree.references.size() <= SHARED_REFERENCES) {
         parts_.push_back(i);
         continue;
       }

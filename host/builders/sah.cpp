@@ -14,8 +14,8 @@ namespace coppice {
 namespace {
 
 // Nodes of more triangles are split by all threads together, those below are each built by one thread.
-constexpr std::uint32_t SHARED_COUNT = 1 << 14;
-constexpr std::size_t CHUNK = 1 << 12;
+constexpr std::uint32_t SHARED_LEAVES = 1 << 14;
+constexpr std::size_t SAH_CHUNK = 1 << 12;
 
 // Small nodes are the many: there fewer bins serve as well, as in Embree.
 std::uint32_t bin_count_for(std::uint32_t count) { return std::min(4 + count / 16, Bins::LIMIT); }
@@ -70,7 +70,7 @@ class SharedSplits {
     while (!stack.empty()) {
       const Subtree top = stack.back();
       stack.pop_back();
-      if (top.count() <= SHARED_COUNT) {
+      if (top.count() <= SHARED_LEAVES) {
         parts.push_back(top);
         continue;
       }
@@ -92,9 +92,9 @@ class SharedSplits {
   std::uint32_t split_together(const Subtree& subtree) {
     if (must_halve(subtree)) return list_middle(subtree);
     const std::span<Node> leaves = std::span(leaves_).subspan(subtree.begin, subtree.count());
-    const std::size_t chunks = chunk_count(leaves.size(), CHUNK);
+    const std::size_t chunks = chunk_count(leaves.size(), SAH_CHUNK);
     std::vector<LaneBox> bounds(chunks);
-    threads_.for_each_chunk(leaves.size(), CHUNK, [&](Chunk chunk, std::size_t k) {
+    threads_.for_each_chunk(leaves.size(), SAH_CHUNK, [&](Chunk chunk, std::size_t k) {
       bounds[k] = centre_bounds(leaves.subspan(chunk.begin, chunk.count()), scale_);
     });
     LaneBox all_bounds = EMPTY_LANE_BOX;
@@ -103,7 +103,7 @@ class SharedSplits {
     if (grid.is_flat()) return list_middle(subtree);
 
     std::vector<Bins> bins(chunks, Bins(grid.bin_count()));
-    threads_.for_each_chunk(leaves.size(), CHUNK, [&](Chunk chunk, std::size_t k) {
+    threads_.for_each_chunk(leaves.size(), SAH_CHUNK, [&](Chunk chunk, std::size_t k) {
       bins[k].add(leaves.subspan(chunk.begin, chunk.count()), grid);
     });
     for (std::size_t k = 1; k < chunks; ++k) bins[0].add(bins[k]);
@@ -116,8 +116,8 @@ class SharedSplits {
     const std::span<Node> leaves = std::span(leaves_).subspan(subtree.begin, subtree.count());
     const std::span<Node> spare(spare_.get() + subtree.begin, subtree.count());
     // Each chunk gathers its first part from its front and its second part from its back.
-    std::vector<std::size_t> first_counts(chunk_count(leaves.size(), CHUNK));
-    threads_.for_each_chunk(leaves.size(), CHUNK, [&](Chunk chunk, std::size_t k) {
+    std::vector<std::size_t> first_counts(chunk_count(leaves.size(), SAH_CHUNK));
+    threads_.for_each_chunk(leaves.size(), SAH_CHUNK, [&](Chunk chunk, std::size_t k) {
       std::size_t front = chunk.begin, back = chunk.end;
       for (std::size_t i = chunk.begin; i < chunk.end; ++i) {
         const bool is_first = grid.bins_of(lane_box(leaves[i]))[best.axis] < best.first_bin;
@@ -133,7 +133,7 @@ class SharedSplits {
       firsts_before[k] = middle;
       middle += first_counts[k];
     }
-    threads_.for_each_chunk(leaves.size(), CHUNK, [&](Chunk chunk, std::size_t k) {
+    threads_.for_each_chunk(leaves.size(), SAH_CHUNK, [&](Chunk chunk, std::size_t k) {
       const auto from = spare.begin() + static_cast<std::ptrdiff_t>(chunk.begin);
       const auto split = from + static_cast<std::ptrdiff_t>(first_counts[k]);
       const std::size_t seconds_before = chunk.begin - firsts_before[k];

@@ -18,15 +18,15 @@ std::uint32_t spatial_bin_count(std::size_t count) {
   return static_cast<std::uint32_t>(std::min<std::size_t>(4 + count / 16, SPATIAL_BIN_LIMIT));
 }
 
-constexpr std::size_t CHUNK = 1 << 12;
+constexpr std::size_t SBVH_CHUNK = 1 << 12;
 
 // Grows `sum`, that of no references, by those of the node with add(sum, references). Chunk by chunk where
 // the node is split together: sums must not depend on the order of their parts.
 template <class Sum, class Add>
 void sum_up(const ReferenceSet& set, Sum& sum, const Add& add) {
   if (!set.together) return add(sum, set.references);
-  std::vector<Sum> sums(chunk_count(set.references.size(), CHUNK), sum);
-  set.together->for_each_chunk(set.references.size(), CHUNK, [&](Chunk chunk, std::size_t k) {
+  std::vector<Sum> sums(chunk_count(set.references.size(), SBVH_CHUNK), sum);
+  set.together->for_each_chunk(set.references.size(), SBVH_CHUNK, [&](Chunk chunk, std::size_t k) {
     add(sums[k], set.references.subspan(chunk.begin, chunk.count()));
   });
   for (const Sum& part : sums) sum.add(part);

@@ -15,14 +15,10 @@ static_assert(std::min({PRIMITIVE_BOUNDS_TILE, MORTON_TILE, SORT_HISTOGRAM_TILE,
                         SORT_MATCH_TILE, SORT_SCAN_TILE, PLOC_LEAVES_TILE}) >= PLOC_MERGE_TILE);
 static_assert(PLOC_FINISH_CLUSTERS <= PLOC_MERGE_TILE, "the finish takes its clusters for one tile");
 
-uvec3 tiles(std::uint32_t count, std::uint32_t tile, std::uint32_t rows = 1) {
-  return {count / tile + (count % tile != 0), rows, 1};
-}
-
 void append_bounds(Chain& chain, const BuildPlan& plan) {
   chain.run(stages::primitive_bounds,
             {chain.at(plan.triangles), chain.at(plan.boxes), chain.at(plan.state), plan.triangle_count, 0},
-            tiles(plan.triangle_count, PRIMITIVE_BOUNDS_TILE));
+            groups_of(plan.triangle_count, PRIMITIVE_BOUNDS_TILE));
 }
 
 void append_morton_codes(Chain& chain, const BuildPlan& plan) {
@@ -30,7 +26,7 @@ void append_morton_codes(Chain& chain, const BuildPlan& plan) {
   chain.run(stages::morton_codes,
             {chain.at(plan.boxes), chain.at(plan.state), chain.at(plan.unsorted_keys),
              chain.at(plan.unsorted_values), n, plan.options.morton_bits / 30},
-            tiles(n, MORTON_TILE));
+            groups_of(n, MORTON_TILE));
 }
 
 void clear_sort(Chain& chain, const BuildPlan& plan) {
@@ -50,7 +46,7 @@ void append_onesweep(Chain& chain, const BuildPlan& plan) {
   const std::uint32_t n = plan.triangle_count, key_words = plan.options.morton_bits / 30;
   const SortPlan& sort = plan.sort;
   chain.run(stages::sort_histogram, {chain.at(plan.unsorted_keys), chain.at(plan.histogram), n, key_words},
-            tiles(n, SORT_HISTOGRAM_TILE, key_words));
+            groups_of(n, SORT_HISTOGRAM_TILE, key_words));
   chain.run(stages::sort_digit_scan, {chain.at(plan.histogram), sort.passes, 0}, {sort.passes, 1, 1});
   std::vector<std::uint32_t> constants = lookback_constants(plan.options);
   constants.insert(constants.end(),
@@ -132,7 +128,7 @@ void append_ploc(Chain& chain, const BuildPlan& plan) {
   chain.run(stages::ploc_leaves,
             {chain.at(plan.boxes), chain.at(plan.values[0]), chain.at(plan.clusters[0]), chain.at(plan.state),
              chain.at(plan.rounds), plan.triangle_count, 0},
-            tiles(plan.triangle_count, PLOC_LEAVES_TILE));
+            groups_of(plan.triangle_count, PLOC_LEAVES_TILE));
   for (std::uint32_t round = 0; round < plan.recorded_rounds; ++round) append_round(chain, plan, round);
   chain.run(stages::ploc_finish,
             {chain.at(plan.clusters[0]), chain.at(plan.clusters[1]), chain.at(plan.nodes),
@@ -142,14 +138,14 @@ void append_ploc(Chain& chain, const BuildPlan& plan) {
 
 // One dispatch builds the whole tree.
 void append_hploc(Chain& chain, const BuildPlan& plan) {
-  const std::uint32_t tile_count = tiles(plan.triangle_count, HPLOC_TILE).x;
-  const std::uint32_t rows = tiles(tile_count, 65535).x;
+  const std::uint32_t tile_count = groups_of(plan.triangle_count, HPLOC_TILE).x;
+  const std::uint32_t rows = groups_of(tile_count, 65535).x;
   const std::uint32_t cluster_limit = plan.options.builder == DeviceBuilder::lbvh ? 1 : HPLOC_CLUSTERS;
   chain.run(stages::hploc_build,
             {chain.at(plan.boxes), chain.at(plan.keys[0]), chain.at(plan.values[0]), chain.at(plan.nodes),
              chain.at(plan.clusters[0]), chain.at(plan.cluster_names), chain.at(plan.arrivals),
              chain.at(plan.state), plan.options.morton_bits / 30, plan.options.radius, cluster_limit, 0},
-            rows == 0 ? uvec3(0) : tiles(tile_count, rows, rows), {cluster_limit, plan.options.radius});
+            rows == 0 ? uvec3(0) : groups_of(tile_count, rows, rows), {cluster_limit, plan.options.radius});
 }
 
 }  // namespace

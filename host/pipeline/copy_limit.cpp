@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint64_t quad_bytes = 2 * sizeof(uvec4);  // read and written
 constexpr std::uint64_t least_bytes = 4 << 10, greatest_bytes = 256 << 20;
 constexpr std::size_t runs = 5;
-constexpr double limit_seconds = 60;
+constexpr double copy_limit_seconds = 60;
 
 std::uint64_t quads_of(std::uint64_t bytes) { return divide_up(bytes, quad_bytes); }
 
@@ -50,10 +50,10 @@ CopyLimit measure_copy_limit(Device& device, std::uint64_t most_bytes) {
   Chain chain = executor.chain();
   for (const auto& measurement : measurements) append_copy(chain, plan, measurement.bytes);
   Recorder recorder = executor.record(chain.steps(), Timestamps::every_step);
-  recorder.submit_and_wait(limit_seconds);
+  recorder.submit_and_wait(copy_limit_seconds);
   std::vector<std::vector<double>> times(measurements.size());
   for (std::size_t run = 0; run < runs; ++run) {
-    const std::vector<double> steps_ms = recorder.submit_and_wait(limit_seconds).steps_ms;
+    const std::vector<double> steps_ms = recorder.submit_and_wait(copy_limit_seconds).steps_ms;
     for (std::size_t i = 0; i < times.size(); ++i) times[i].push_back(steps_ms.at(i));
   }
   for (std::size_t i = 0; i < times.size(); ++i) {

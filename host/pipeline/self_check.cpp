@@ -19,7 +19,7 @@ constexpr std::uint32_t check_triangles = 26000;
 // A small picture, packets of which go the same way, and others that do not.
 constexpr std::uint32_t picture_edge = 16, other_rays = 64;
 constexpr std::uint32_t brute_force_rays = 64;
-constexpr double limit_seconds = 60;
+constexpr double check_limit_seconds = 60;
 
 class Random {
  public:
@@ -140,7 +140,7 @@ Outcome run_check(Device& device, const DeviceUse& use, bool lookback,
   }
   Chain chain = plan.append(gpu.chain(), use.builds);
   if (fault) fault(chain.steps());
-  gpu.record(chain.steps()).submit_and_wait(limit_seconds);
+  gpu.record(chain.steps()).submit_and_wait(check_limit_seconds);
 
   if (!same_bits(gpu, cpu, plan.build.nodes)) return Outcome::wrong_tree;
   for (const RaySlots& slots : plan.traces) {

@@ -16,8 +16,6 @@ namespace {
 
 constexpr std::uint32_t max_band_rays = 1u << 20;
 
-uvec3 groups_of(std::uint32_t count, std::uint32_t group) { return {divide_up(count, group), 1, 1}; }
-
 void append_walk(Chain& chain, const TreeSlots& tree, const RaySlots& slots, const RayRange& range,
                  const TraceOptions& options) {
   const auto triangles = chain.at(tree.triangles);

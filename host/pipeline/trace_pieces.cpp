@@ -9,8 +9,6 @@ namespace coppice {
 
 namespace {
 
-uvec3 groups_of(std::uint32_t count, std::uint32_t group) { return {divide_up(count, group), 1, 1}; }
-
 // Of the least step: a ray, or its tests of one slice of the triangles.
 std::uint64_t step_work(const TreeSlots& tree, const TraceOptions& options) {
   return options.brute_force ? std::clamp(tree.triangle_count, 1u, BRUTE_FORCE_SLICE) : 1;

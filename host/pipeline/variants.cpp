@@ -33,15 +33,15 @@ std::uint32_t trace_rule(const DeviceProperties& device) {
 
 std::uint32_t trace_without_lookback(std::uint32_t value) { return value; }
 
-constexpr VariantStage stages[] = {
+constexpr VariantStage STAGES_WITH_VARIANTS[] = {
     {"sort", sort_values, &Variants::sort, sort_rule, sort_without_lookback},
     {"trace", trace_values, &Variants::trace, trace_rule, trace_without_lookback}};
 
 std::string set_variant(std::string_view text, Variants& variants) {
   const std::size_t equals = text.find('=');
   const std::string_view name = text.substr(0, equals);
-  const auto stage = std::ranges::find(stages, name, &VariantStage::name);
-  if (equals == text.npos || stage == std::end(stages))
+  const auto stage = std::ranges::find(STAGES_WITH_VARIANTS, name, &VariantStage::name);
+  if (equals == text.npos || stage == std::end(STAGES_WITH_VARIANTS))
     return "'" + std::string(text) + "' names no stage with variants";
   const std::string_view value = text.substr(equals + 1);
   const auto found = std::ranges::find(stage->values, value);
@@ -53,17 +53,17 @@ std::string set_variant(std::string_view text, Variants& variants) {
 
 }  // namespace
 
-std::span<const VariantStage> variant_stages() { return stages; }
+std::span<const VariantStage> variant_stages() { return STAGES_WITH_VARIANTS; }
 
 Variants default_variants(const DeviceProperties& device) {
   Variants variants;
-  for (const VariantStage& stage : stages) variants.*stage.value = stage.rule(device);
+  for (const VariantStage& stage : STAGES_WITH_VARIANTS) variants.*stage.value = stage.rule(device);
   return variants;
 }
 
 std::string to_string(const Variants& variants) {
   std::string text;
-  for (const VariantStage& stage : stages) {
+  for (const VariantStage& stage : STAGES_WITH_VARIANTS) {
     if (!text.empty()) text += ',';
     text += std::string(stage.name) + '=' + std::string(stage.values[variants.*stage.value]);
   }

@@ -70,7 +70,7 @@ void append_wide(Chain& chain, const TreeSlots& tree, const WidePlan& plan) {
   chain.clear(plan.tile_sums);
   chain.clear(plan.block_sums);
   if (plan.levels_bound == 0) return;
-  const auto groups_of = [&](std::uint32_t level) {
+  const auto indirect_groups_of = [&](std::uint32_t level) {
     return Place{plan.levels.place.block,
                  plan.levels.place.offset + level * sizeof(WideLevel) + offsetof(WideLevel, groups)};
   };
@@ -91,9 +91,10 @@ void append_wide(Chain& chain, const TreeSlots& tree, const WidePlan& plan) {
                             0};
   chain.run(stages::wide_root, collapse, {1, 1, 1});
   for (; collapse.level < plan.levels_bound; ++collapse.level)
-    chain.run_indirect(stages::wide_collapse, collapse, groups_of(collapse.level));
+    chain.run_indirect(stages::wide_collapse, collapse, indirect_groups_of(collapse.level));
   for (std::uint32_t level = plan.levels_bound; level-- > 0;)
-    chain.run_indirect(stages::wide_sizes, {entries, sizes, offsets, levels, level, 0}, groups_of(level));
+    chain.run_indirect(stages::wide_sizes, {entries, sizes, offsets, levels, level, 0},
+                       indirect_groups_of(level));
   chain.run_indirect(
       stages::wide_quantise,
       {chain.at(tree.nodes), entries, children, offsets, counts, chain.at(tree.wide_nodes)},

@@ -6,8 +6,6 @@
 namespace coppice {
 namespace {
 
-bool is_finite(glm::vec3 p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
-
 template <class Counts>
 Bounds bounds_of(const Scene& scene, Counts counts) {
   Bounds bounds;
@@ -19,6 +17,8 @@ Bounds bounds_of(const Scene& scene, Counts counts) {
 }
 
 }  // namespace
+
+bool is_finite(glm::vec3 p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 bool is_active(const Scene& scene, glm::uvec3 triangle) {
   return is_finite(scene.positions[triangle.x]) && is_finite(scene.positions[triangle.y]) &&

@@ -30,6 +30,9 @@ struct Bounds {
   }
 };
 
+// Whether all three coordinates are.
+bool is_finite(glm::vec3 p);
+
 // Whether all corners are finite.
 bool is_active(const Scene& scene, glm::uvec3 triangle);
 

@@ -14,10 +14,6 @@
 namespace coppice {
 namespace {
 
-[[noreturn]] void fail(const std::filesystem::path& path, const std::string& reason) {
-  throw InputError(printable(path) + ": cannot write: " + reason);
-}
-
 std::string last_error() { return std::strerror(errno); }
 
 // Of a link that leads nowhere yet, where it leads; else the path itself.
@@ -25,7 +21,7 @@ std::filesystem::path follow(const std::filesystem::path& path) {
   std::error_code error;
   std::filesystem::path end = path;
   for (int links = 0; std::filesystem::is_symlink(end, error); ++links) {
-    if (links == 40) fail(path, "too many links lead from one to another");
+    if (links == 40) fail_to_write(path, "too many links lead from one to another");
     end = end.parent_path() / std::filesystem::read_symlink(end, error);
   }
   return end;
@@ -41,18 +37,18 @@ Target find_target(const std::filesystem::path& path) {
   if (path.empty()) throw InputError("cannot write: no file name given");
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
-  if (std::filesystem::is_directory(status)) fail(path, "is a directory");
+  if (std::filesystem::is_directory(status)) fail_to_write(path, "is a directory");
   Target target{path, path};
   if (std::filesystem::exists(status)) {
-    if (access(path.c_str(), W_OK) != 0) fail(path, last_error());
+    if (access(path.c_str(), W_OK) != 0) fail_to_write(path, last_error());
     target.path = std::filesystem::canonical(path, error);
-    if (error) fail(path, error.message());
+    if (error) fail_to_write(path, error.message());
     target.partial = target.path;
     if (!std::filesystem::is_regular_file(status)) return target;
   } else {
     target.path = target.partial = follow(path);
     if (const auto folder = target.path.parent_path(); !folder.empty()) {
-      if (!std::filesystem::is_directory(folder, error)) fail(path, "no such directory");
+      if (!std::filesystem::is_directory(folder, error)) fail_to_write(path, "no such directory");
     }
   }
   target.partial += "." + std::to_string(getpid()) + ".partial";
@@ -63,25 +59,29 @@ Target find_target(const std::filesystem::path& path) {
 void replace_file(const std::filesystem::path& path, const Target& target, std::string_view bytes) {
   std::error_code ignored;
   std::ofstream file(target.partial, std::ios::binary);
-  if (!file) fail(path, last_error());
+  if (!file) fail_to_write(path, last_error());
   file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   file.close();
   const bool in_place = target.partial == target.path;
   if (!file) {
     const std::string reason = last_error();
     if (!in_place) std::filesystem::remove(target.partial, ignored);
-    fail(path, reason);
+    fail_to_write(path, reason);
   }
   if (in_place) return;
   std::error_code error;
   std::filesystem::rename(target.partial, target.path, error);
   if (error) {
     std::filesystem::remove(target.partial, ignored);
-    fail(path, error.message());
+    fail_to_write(path, error.message());
   }
 }
 
 }  // namespace
+
+void fail_to_write(const std::filesystem::path& path, const std::string& reason) {
+  throw InputError(printable(path) + ": cannot write: " + reason);
+}
 
 void write_file(const std::filesystem::path& path, std::string_view bytes) {
   replace_file(path, find_target(path), bytes);
@@ -92,7 +92,7 @@ void check_writable(const std::filesystem::path& path) {
   if (target.partial == target.path) return;
   const bool opened = std::ofstream(target.partial, std::ios::binary).is_open();
   const std::string reason = last_error();
-  if (!opened) fail(path, reason);
+  if (!opened) fail_to_write(path, reason);
   std::error_code ignored;
   std::filesystem::remove(target.partial, ignored);
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "interface/types.h"
+#include "stages/divide_up.h"
 #include "stages/layout.h"
 #include "stages/stage.h"
 
@@ -23,6 +24,11 @@ struct Step {
   std::uint64_t clear_bytes = 0;
   std::vector<std::uint32_t> specialization;  // constants 0, 1, ... of the kernel; never change its results
 };
+
+// Workgroups, `rows` rows of them, for `count` items, `size` to each column.
+inline uvec3 groups_of(std::uint32_t count, std::uint32_t size, std::uint32_t rows = 1) {
+  return {divide_up(count, size), rows, 1};
+}
 
 // A chain of stages, written once and run by any executor. It is resolved for one address space: the
 // device's, where kernels run on it, or the host's, where twins do. A barrier precedes every step.

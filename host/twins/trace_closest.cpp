@@ -9,14 +9,14 @@ namespace coppice::twins {
 
 namespace {
 
-struct Visit {
+struct PairVisit {
   float enter;
   uint pair;
 };
 
 // Depth-first, nearer child first. Returns how many pairs of children it visited.
 uint trace(const TraceClosestArgs& args, const TraceRay& ray, Hit& hit) {
-  std::vector<Visit> stack;
+  std::vector<PairVisit> stack;
   const auto meet = [&](const Node& child) {
     float enter;
     if (!ray_meets_box(ray, child.box_min, child.box_max, args.box_test, hit.t, enter)) return false;
@@ -31,15 +31,15 @@ uint trace(const TraceClosestArgs& args, const TraceRay& ray, Hit& hit) {
   uint steps = 0;
   meet(args.nodes[0]);
   while (!stack.empty()) {
-    const Visit visit = stack.back();
+    const PairVisit visit = stack.back();
     stack.pop_back();
     if (visit.enter > hit.t) continue;
     ++steps;
     const bool left = meet(args.nodes[visit.pair]);
     const bool right = meet(args.nodes[visit.pair + 1]);
     if (left && right) {
-      Visit& first = stack[stack.size() - 2];
-      Visit& second = stack.back();
+      PairVisit& first = stack[stack.size() - 2];
+      PairVisit& second = stack.back();
       if (first.enter <= second.enter) std::swap(first, second);
     }
   }

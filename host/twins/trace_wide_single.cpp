@@ -83,7 +83,7 @@ class Distances {
   float inverse_[3], pad_[3], unit_, offset_;
 };
 
-struct Visit {
+struct ChildVisit {
   uint kept;  // bits of the distance
   uint word;  // of the child
 };
@@ -93,8 +93,8 @@ uint trace(const TraceWideArgs& args, const TraceRay& ray, Hit& hit) {
   const Node& root = args.nodes[0];
   const Distances distances(ray, root.box_min, root.box_max);
   uint visited = 0;
-  for (std::vector<Visit> stack = {{0, 0}}; !stack.empty();) {
-    const Visit visit = stack.back();
+  for (std::vector<ChildVisit> stack = {{0, 0}}; !stack.empty();) {
+    const ChildVisit visit = stack.back();
     stack.pop_back();
     if (visit.kept > kept_bits(distances.of_hit(hit.t))) continue;
     if (visit.word >= WIDE_LEAF) {
@@ -106,7 +106,7 @@ uint trace(const TraceWideArgs& args, const TraceRay& ray, Hit& hit) {
     const WideNode& node = args.wide_nodes[visit.word];
     struct Met {
       uint key;
-      Visit visit;
+      ChildVisit visit;
     };
     std::vector<Met> met;
     for (uint child = 0; child < WIDE_CHILDREN; ++child) {

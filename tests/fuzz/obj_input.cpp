@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "scene/bounds.h"
 #include "scene/input_error.h"
 #include "scene/load_obj.h"
 
@@ -17,8 +18,6 @@ bool is_one_line(const std::string& text) {
     return static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
   });
 }
-
-bool is_finite(glm::vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 bool is_sound(const Material& material) {
   return is_finite(material.diffuse) && is_finite(material.specular) && is_finite(material.emission) &&

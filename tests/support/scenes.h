@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <string>
+#include <string_view>
 
 #include "scene/hard_cases.h"
 #include "scene/scene.h"
@@ -17,6 +18,10 @@ inline bool same_bits(const Scene& a, const Scene& b) {
   return a.positions.size() == b.positions.size() && a.indices == b.indices &&
          a.material_index == b.material_index &&
          std::memcmp(a.positions.data(), b.positions.data(), a.positions.size() * sizeof(glm::vec3)) == 0;
+}
+
+inline Scene make_hard_case(std::string_view name, std::uint32_t count, std::uint64_t seed = 1) {
+  return find_hard_case(name)->make(count, seed);
 }
 
 inline void expect_consistent(const Scene& scene) {
