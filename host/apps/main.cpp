@@ -1,7 +1,3 @@
-#if __has_include(<malloc.h>)
-#include <malloc.h>
-#endif
-
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -9,10 +5,10 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
-#include <limits>
 #include <new>
 
 #include "apps/command_line.h"
+#include "apps/heap.h"
 #include "apps/progress.h"
 #include "pipeline/interruption.h"
 
@@ -40,12 +36,7 @@ int status_after_output(int status) {
 
 int main(int argc, char** argv) {
   hold_closed_streams();
-  // Memory that one build gives back serves the next: fetching it from the kernel anew, page by page, takes
-  // up to half of a build of a million triangles.
-#ifdef M_MMAP_MAX
-  mallopt(M_MMAP_MAX, 0);
-  mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
-#endif
+  coppice::settle_heap();
   try {
     coppice::show_loading();
     return status_after_output(coppice::run_command_line(argc, argv));

@@ -1,5 +1,8 @@
 #include "scene/bounds.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -8,12 +11,21 @@ namespace {
 
 template <class Counts>
 Bounds bounds_of(const Scene& scene, Counts counts) {
-  Bounds bounds;
-  for (const glm::uvec3 triangle : scene.indices) {
-    if (!counts(scene, triangle)) continue;
-    for (int corner = 0; corner < 3; ++corner) bounds.add(scene.positions[triangle[corner]]);
-  }
-  return bounds;
+  const auto add_triangles = [&](const tbb::blocked_range<std::size_t>& range, Bounds bounds) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      const glm::uvec3 triangle = scene.indices[i];
+      if (!counts(scene, triangle)) continue;
+      for (int corner = 0; corner < 3; ++corner) bounds.add(scene.positions[triangle[corner]]);
+    }
+    return bounds;
+  };
+  const auto unite = [](Bounds a, const Bounds& b) {
+    a.low = glm::min(a.low, b.low);
+    a.high = glm::max(a.high, b.high);
+    return a;
+  };
+  return tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, scene.indices.size(), 1 << 14), Bounds{},
+                              add_triangles, unite);
 }
 
 }  // namespace
