@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Installs what is missing (Debian 12), builds everything by g++ and by clang with warnings as errors and runs all checks, the
-# cheap ones first. The first that fails ends it, so what it said stands last; when all pass, that is ctest's summary
-# of the full run on the reference driver. Before that run a table says how long each part took.
+# Installs what is missing (Debian 12), builds everything by g++ and by clang with warnings as errors and runs all
+# checks, the cheap ones first. The first that fails ends it, so what it said stands last; when all pass, that is ctest's
+# summary of the full run on the reference driver. Before that run a table says how long each part took.
 #   ./test.sh                    everything
 #   ./test.sh CTEST_ARGUMENT...  one ctest run on the reference driver, for example ./test.sh -R sort
 # COPPICE_DRIVER=auto|private|stock|system chooses the Vulkan driver, see host/setup.sh.
