@@ -16,7 +16,7 @@ test_timeout=300 # seconds a test, where CMake sets no other
 reference_only='AMillion|EveryStageOfEveryTree|WideTree.PowersOfTwo|WideTree.SizesUpTo300|BenchChecksAndTimes'
 reference_only+='|TuneKeeps|TuneWithout|NamesMayHoldAnything|AFullDisk|IsNotWaitedFor|OptionsDoWhatTheySay'
 reference_only+='|OutputsThatCome|SeedsInARow|lookback_on_4_threads|AboutSixtyFourTilesOfASort|LikeAGpu'
-# One tree of the host's without and one with split triangles there, and those of the device.
+# Of the trees that are traced, left are one without split triangles and one with, and the device's.
 reference_only+='|DeviceTraceOf.*/(bottom_up|gd16|gd16_early|hploc|lbvh|ploc_parallel|sah|sah_sweep|top_down)( |$)'
 
 # timed NAME COMMAND...: notes how long it took.

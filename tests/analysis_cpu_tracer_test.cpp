@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <stdexcept>
 #include <vector>
 
@@ -36,7 +35,7 @@ struct TracedScene {
   bool axis_aligned;    // rays along an axis, with zeros of both signs
 };
 
-void PrintTo(const TracedScene& encounter, std::ostream* out) { *out << encounter.name; }
+void PrintTo(const TracedScene& scene, std::ostream* out) { *out << scene.name; }
 
 class TracersAgree : public testing::TestWithParam<TracedScene> {
  protected:

@@ -22,7 +22,7 @@ struct SteadyOptions {
   double most_warm_up_ms = 4000;         // then the batch is ended, and no other one begun
 };
 
-// No measured submit may take longer: the program ends then, with one line.
+// Of submits that are measured whole, builds, sorts and scans: the program ends after it, with one line.
 inline constexpr double measured_limit_seconds = 120;
 
 inline double median_of(std::vector<double> values) {

@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "pipeline/trace_pieces.h"
-#include "stages/divide_up.h"
 #include "stages/stages.h"
 
 namespace coppice {

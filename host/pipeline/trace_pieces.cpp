@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "stages/divide_up.h"
 #include "stages/stages.h"
 
 namespace coppice {

@@ -18,7 +18,7 @@ const Args* args_of(const Step& step, const Stage<Args>& stage) {
 }
 
 // None of nothing, whatever the size of a tile.
-Bytes count_tiles(Bytes count, Bytes tile) { return count == 0 ? 0 : divide_up(count, tile); }
+Bytes tiles(Bytes count, Bytes tile) { return count == 0 ? 0 : divide_up(count, tile); }
 
 constexpr Bytes digit_row = SORT_DIGITS * sizeof(uint);  // of Onesweep: a word for each digit
 
@@ -28,13 +28,13 @@ Bytes pairs_moved(Bytes count, Bytes key_words, bool has_values) {
 
 Bytes prefix_scan_bytes(const PrefixScanArgs& args) {
   // As for a sort's pass; without lookback a word a tile is read.
-  const Bytes status = count_tiles(args.quad_count, SCAN_TILE) * 4 * (args.lookback ? 3 * SCAN_SUMS : 1);
+  const Bytes status = tiles(args.quad_count, SCAN_TILE) * 4 * (args.lookback ? 3 * SCAN_SUMS : 1);
   return Bytes{args.quad_count} * 2 * sizeof(uvec4) + status;
 }
 
 // Words of all digits of all tiles, where Onesweep is not used.
 Bytes tile_digits_bytes(const SortScatterArgs& args) {
-  return count_tiles(args.count, args.tile_keys) * sizeof(uint) << args.digit_bits;
+  return tiles(args.count, args.tile_keys) * sizeof(uint) << args.digit_bits;
 }
 
 std::optional<Bytes> sort_bytes(const Step& step) {
@@ -43,7 +43,7 @@ std::optional<Bytes> sort_bytes(const Step& step) {
   // Status words are written as aggregate and as prefix, and read by the next tile.
   if (const auto* a = args_of(step, stages::sort_pass))
     return pairs_moved(a->count, a->key_words, a->values_in.value != 0) +
-           count_tiles(a->count, a->tile_keys) * 3 * digit_row;
+           tiles(a->count, a->tile_keys) * 3 * digit_row;
   if (const auto* a = args_of(step, stages::sort_tile_counts))
     return Bytes{a->count} * 4 + tile_digits_bytes(*a);
   if (const auto* a = args_of(step, stages::sort_tile_scan))
@@ -180,7 +180,7 @@ std::optional<std::uint64_t> modelled_bytes(const Step& step, const RunCounts& c
   if (!step.stage) return step.clear_bytes;
   if (const auto* a = args_of(step, stages::copy_words)) return Bytes{a->quad_count} * 2 * sizeof(uvec4);
   if (const auto* a = args_of(step, stages::scan_tile_sums))
-    return Bytes{a->quad_count} * sizeof(uvec4) + count_tiles(a->quad_count, SCAN_TILE) * 4;
+    return Bytes{a->quad_count} * sizeof(uvec4) + tiles(a->quad_count, SCAN_TILE) * 4;
   if (const auto* a = args_of(step, stages::prefix_scan)) return prefix_scan_bytes(*a);
   if (const auto* a = args_of(step, stages::primitive_bounds))
     return Bytes{a->triangle_count} * (sizeof(Triangle) + sizeof(Aabb));
