@@ -13,7 +13,6 @@ namespace {
 
 const Triangle CEILING{vec3(0, 0, 1), vec3(1, 0, 1), vec3(0, 1, 1)};
 const std::vector<Triangle> TWO_STOREYS = {FLOOR, CEILING};
-const Hit NO_HIT{INFINITE, NO_TRIANGLE, 0, 0};
 
 // Down from z = 2, so that CEILING is at t = 1 and FLOOR at t = 2.
 Ray down_on_both(float x, float y) { return down_at(x, y, 2); }
@@ -28,7 +27,7 @@ Verdict judge(const Ray& ray, const Hit& one, const Hit& other,
 TEST(HitReferee, TakesTheSameHitForTheSame) {
   EXPECT_EQ(judge(down_on_both(0.2f, 0.2f), {1, 1, 0.2f, 0.2f}, {1, 1, 0.2f, 0.2f}), Verdict::same);
   EXPECT_EQ(judge(down_on_both(0.2f, 0.2f), {1, 1, 0.2f, 0.2f}, {1 + 1e-6f, 1, 0.2f, 0.2f}), Verdict::same);
-  EXPECT_EQ(judge(down_on_both(5, 5), NO_HIT, NO_HIT), Verdict::same);
+  EXPECT_EQ(judge(down_on_both(5, 5), MISS, MISS), Verdict::same);
 }
 
 TEST(HitReferee, SeesATie) {
@@ -37,24 +36,24 @@ TEST(HitReferee, SeesATie) {
 }
 
 TEST(HitReferee, ForgivesAMissAtAnEdge) {
-  EXPECT_EQ(judge(down_on_both(0.5f, 1e-7f), {1, 1, 0, 0}, NO_HIT), Verdict::borderline);
-  EXPECT_EQ(judge(down_on_both(0.5f, -1e-7f), {1, 1, 0, 0}, NO_HIT), Verdict::borderline);
+  EXPECT_EQ(judge(down_on_both(0.5f, 1e-7f), {1, 1, 0, 0}, MISS), Verdict::borderline);
+  EXPECT_EQ(judge(down_on_both(0.5f, -1e-7f), {1, 1, 0, 0}, MISS), Verdict::borderline);
   EXPECT_EQ(judge(down_on_both(0.5f, 1e-7f), {1, 1, 0, 0}, {2, 0, 0, 0}), Verdict::borderline);
 }
 
 TEST(HitReferee, RefusesAMissInsideOfATriangle) {
-  EXPECT_EQ(judge(down_on_both(0.5f, 1e-4f), {1, 1, 0, 0}, NO_HIT), Verdict::wrong);
+  EXPECT_EQ(judge(down_on_both(0.5f, 1e-4f), {1, 1, 0, 0}, MISS), Verdict::wrong);
   EXPECT_EQ(judge(down_on_both(0.5f, 1e-4f), {1, 1, 0, 0}, {2, 0, 0, 0}), Verdict::wrong);
 }
 
 TEST(HitReferee, RefusesAHitOutsideOfATriangle) {
-  EXPECT_EQ(judge(down_on_both(0.5f, -1e-4f), {1, 1, 0, 0}, NO_HIT), Verdict::wrong);
+  EXPECT_EQ(judge(down_on_both(0.5f, -1e-4f), {1, 1, 0, 0}, MISS), Verdict::wrong);
   EXPECT_EQ(judge(down_on_both(0.5f, -1e-4f), {1, 1, 0, 0}, {1, 1, 0, 0}), Verdict::wrong);
 }
 
 TEST(HitReferee, RefusesAHitOfATriangleWithoutArea) {
   const std::vector<Triangle> segment = {{vec3(0), vec3(0.5f, 0, 0), vec3(1, 0, 0)}};
-  EXPECT_EQ(judge(down_on_both(0.5f, 0), {2, 0, 0, 0}, NO_HIT, segment), Verdict::wrong);
+  EXPECT_EQ(judge(down_on_both(0.5f, 0), {2, 0, 0, 0}, MISS, segment), Verdict::wrong);
 }
 
 // Faults planted into the hits of a tracer, wherever these are well inside of their triangles.
@@ -81,7 +80,7 @@ class PlantedFault : public testing::Test {
 };
 
 TEST_F(PlantedFault, AMissIsRefused) {
-  expect_refused([](const Hit&) { return NO_HIT; });
+  expect_refused([](const Hit&) { return MISS; });
 }
 
 TEST_F(PlantedFault, AnotherDistanceIsRefused) {

@@ -19,8 +19,6 @@
 namespace coppice {
 namespace {
 
-const Hit MISS{INFINITE, NO_TRIANGLE, 0, 0};
-
 // Triangles, rays and the hits that someone reports.
 struct Trial {
   Trial(std::vector<Triangle> given, RayKind kind, std::uint32_t count) : triangles(std::move(given)) {

@@ -23,7 +23,7 @@ using glm::dvec3;
 // last place of a double, and still far less than one of a float.
 constexpr double ROUNDING = 0x1p-44;
 
-struct Stretch {
+struct SlabInterval {
   double near, far;
   bool is_empty() const { return !(near <= far); }
 };
@@ -46,8 +46,8 @@ class PreparedRay {
 
   // The part of the line inside of a box, a little enlarged. Monotonic: a larger box never has a smaller
   // part.
-  Stretch clip(const vec3& box_min, const vec3& box_max) const {
-    Stretch inside{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  SlabInterval clip(const vec3& box_min, const vec3& box_max) const {
+    SlabInterval inside{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     for (int axis = 0; axis < 3; ++axis) {
       const double low = box_min[axis] - origin[axis];
       const double high = box_max[axis] - origin[axis];
@@ -78,8 +78,8 @@ void test_triangle(std::span<const Triangle> triangles, std::uint32_t index, con
   for (const vec3& corner : {triangle.a, triangle.b, triangle.c}) {
     if (!std::isfinite(corner.x) || !std::isfinite(corner.y) || !std::isfinite(corner.z)) return;
   }
-  const Stretch inside = ray.clip(glm::min(glm::min(triangle.a, triangle.b), triangle.c),
-                                  glm::max(glm::max(triangle.a, triangle.b), triangle.c));
+  const SlabInterval inside = ray.clip(glm::min(glm::min(triangle.a, triangle.b), triangle.c),
+                                       glm::max(glm::max(triangle.a, triangle.b), triangle.c));
   if (inside.is_empty()) return;
 
   const dvec3 a = dvec3(triangle.a) - ray.origin;
@@ -120,7 +120,7 @@ void push_children(const Node& parent, std::span<const Node> nodes, const Prepar
                    std::vector<Entry>& stack) {
   const std::size_t first = stack.size();
   for (const std::uint32_t child : {parent.child, parent.child + 1}) {
-    const Stretch inside = ray.clip(nodes[child].box_min, nodes[child].box_max);
+    const SlabInterval inside = ray.clip(nodes[child].box_min, nodes[child].box_max);
     // Compared in float, as distances are: a triangle's is clamped to its box before it is rounded.
     if (inside.is_empty() || static_cast<float>(inside.far) < ray.t_min) continue;
     stack.push_back({child, static_cast<float>(inside.near)});

@@ -9,6 +9,8 @@ namespace coppice {
 inline constexpr float INFINITE = std::numeric_limits<float>::infinity();
 inline constexpr float NOT_A_NUMBER = std::numeric_limits<float>::quiet_NaN();
 
+inline constexpr Hit MISS{INFINITE, NO_TRIANGLE, 0, 0};
+
 // A triangle in the plane z = 0.
 inline const Triangle FLOOR{vec3(0, 0, 0), vec3(1, 0, 0), vec3(0, 1, 0)};
 
