@@ -243,7 +243,8 @@ TEST_F(Lockstep, NamesAPlantedFaultByStageAndSlot) {
     options.lookback = fault.lookback;
     const auto difference = build_in_lockstep(triangles, options, [&](std::vector<Step>& steps) {
       for (Step& step : steps) {
-        if (step.stage && std::string_view(step.stage->name) == fault.stage) step.stage = &fault.declaration;
+        if (stage_of(step) && std::string_view(stage_of(step)->name) == fault.stage)
+          dispatch_of(step)->stage = &fault.declaration;
       }
     });
     ASSERT_TRUE(difference) << fault.stage << ": not noticed";

@@ -147,7 +147,7 @@ Found run_with_fault(Device& device, std::size_t chain, const StageDeclaration& 
   return run_chain(device, chain, [&](std::vector<Step>& steps, const LockstepExecutor& executor) {
     planting = {&stage, &executor, slot, damage, {}};
     for (Step& step : steps) {
-      if (step.stage == &stage) step.stage = &faulty;
+      if (stage_of(step) == &stage) dispatch_of(step)->stage = &faulty;
     }
   });
 }
@@ -157,7 +157,7 @@ std::vector<std::set<const StageDeclaration*>> stages_of_chains(Device& device) 
   std::vector<std::set<const StageDeclaration*>> stages(chain_count);
   for (std::size_t chain = 0; chain < chain_count; ++chain) {
     run_chain(device, chain, [&](std::vector<Step>& steps, const LockstepExecutor&) {
-      for (const Step& step : steps) stages[chain].insert(step.stage);
+      for (const Step& step : steps) stages[chain].insert(stage_of(step));
       steps.clear();
     });
   }
@@ -295,7 +295,7 @@ TEST_F(PlantedFaults, AlsoBetweenSlotsAndAfterClears) {
   const auto difference = executor.run([&](Chain& chain) {
     chain.clear(second);
     if (!std::exchange(on_device, false))
-      chain.steps()[0].place.offset += 4;  // the host leaves the first word
+      std::get<Clear>(chain.steps()[0]).place.offset += 4;  // the host leaves the first word
   });
   ASSERT_TRUE(difference);
   EXPECT_EQ(difference->stage, "clear");

@@ -134,8 +134,8 @@ TEST_F(DeviceScan, NamesAPlantedFaultByStageAndSlot) {
     const auto difference = executor.run([&](Chain& chain) {
       append_scan(chain, plan);
       for (Step& step : chain.steps()) {
-        if (step.stage && std::string_view(step.stage->name) == fault.declaration.name)
-          step.stage = &fault.declaration;
+        if (stage_of(step) && std::string_view(stage_of(step)->name) == fault.declaration.name)
+          dispatch_of(step)->stage = &fault.declaration;
       }
     });
     ASSERT_TRUE(difference) << fault.declaration.name;

@@ -15,12 +15,12 @@ namespace {
 
 class SelfCheck : public DeviceTest {};
 
-bool is_stage(const Step& step, std::string_view name) { return step.stage && step.stage->name == name; }
+bool is_stage(const Step& step, std::string_view name) { return stage_of(step) && stage_of(step)->name == name; }
 
 template <class Args>
 Args step_args_of(const Step& step) {
   Args args;
-  std::memcpy(&args, step.args.data(), sizeof args);
+  std::memcpy(&args, dispatch_of(step)->args.data(), sizeof args);
   return args;
 }
 
@@ -33,7 +33,7 @@ bool uses_lookback(const std::vector<Step>& steps) {
 // Every build ends well, with a tree that is valid and not the one asked for.
 void search_too_near(std::vector<Step>& steps) {
   for (Step& step : steps) {
-    if (is_stage(step, "ploc_merge") || is_stage(step, "ploc_tile_counts")) step.specialization.at(3) = 1;
+    if (is_stage(step, "ploc_merge") || is_stage(step, "ploc_tile_counts")) dispatch_of(step)->constants.words.at(3) = 1;
   }
 }
 
@@ -98,8 +98,9 @@ TEST_F(SelfCheck, DoesWithoutLookbackWhereItEndsWithAnError) {
   EXPECT_FALSE(check_device(test_device(), {}, [&](std::vector<Step>& steps) {
     for (Step& step : steps) {
       if (!is_stage(step, "ploc_merge") || step_args_of<PlocMergeArgs>(step).lookback == 0) continue;
-      step.specialization[0] = step.specialization[1] = 0;
-      step.specialization[2] = 1u << LOOKBACK_SILENT_SHIFT;  // no poll, no fallback, a silent tile
+      KernelConstants& constants = dispatch_of(step)->constants;
+      constants.words[0] = constants.words[1] = 0;
+      constants.words[2] = 1u << LOOKBACK_SILENT_SHIFT;  // no poll, no fallback, a silent tile
       stressed = true;
     }
   }));
@@ -113,7 +114,7 @@ TEST_F(SelfCheck, RefusesByNameADeviceThatIsWrongEitherWay) {
 TEST_F(SelfCheck, RefusesADeviceWhoseSubgroupsDoNotMeet) {
   const Fault nobody_arrives = [](std::vector<Step>& steps) {
     for (Step& step : steps) {
-      if (is_stage(step, "hploc_build")) step.groups.x /= 2;  // half of the tiles never come
+      if (is_stage(step, "hploc_build")) dispatch_of(step)->groups.x /= 2;  // half of the tiles never come
     }
   };
   EXPECT_TRUE(says(refusal(builds_by(DeviceBuilder::hploc), nobody_arrives), "computes a wrong tree"));
@@ -123,8 +124,8 @@ TEST_F(SelfCheck, RefusesADeviceWhoseSubgroupsDoNotMeet) {
 TEST_F(SelfCheck, RefusesADeviceByTheTracerThatIsGoingToRun) {
   const Fault one_turn = [](std::vector<Step>& steps) {
     for (Step& step : steps) {
-      if (step.stage && std::string_view(step.stage->name).starts_with("trace_"))
-        step.specialization.at(0) = 1;
+      if (stage_of(step) && std::string_view(stage_of(step)->name).starts_with("trace_"))
+        dispatch_of(step)->constants.words.at(0) = 1;
     }
   };
   const Fault half = [](std::vector<Step>& steps) { steps.back().groups.x /= 2; };

@@ -150,7 +150,7 @@ TEST_F(WideTreeOfTheHost, NamesAPlantedFaultByStageAndSlot) {
       append_build(chain, plan);
       append_wide(chain, plan, wide);
       for (Step& step : chain.steps()) {
-        if (step.stage == fault.stage) step.stage = &faulty;
+        if (stage_of(step) == fault.stage) dispatch_of(step)->stage = &faulty;
       }
     });
     ASSERT_TRUE(difference) << fault.stage->name << ": not noticed";

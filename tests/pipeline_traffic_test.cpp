@@ -41,7 +41,7 @@ std::map<std::string, std::uint64_t> bytes_of(const BuildOptions& options) {
   append_build(chain, plan);
   std::map<std::string, std::uint64_t> bytes;
   for (const Step& step : chain.steps()) {
-    if (step.stage) bytes[step.stage->name] += modelled_bytes(step, two_rounds()).value();
+    if (stage_of(step)) bytes[stage_of(step)->name] += modelled_bytes(step, two_rounds()).value();
   }
   return bytes;
 }
@@ -83,7 +83,7 @@ TEST(Traffic, OfWideNodes) {
   append_wide(chain, tree, plan);
   std::map<std::string, std::uint64_t> bytes;
   for (const Step& step : chain.steps()) {
-    if (step.stage) bytes[step.stage->name] += modelled_bytes(step, counts).value();
+    if (stage_of(step)) bytes[stage_of(step)->name] += modelled_bytes(step, counts).value();
   }
   EXPECT_EQ(bytes["wide_root"], 48u + 7 * 64);
   EXPECT_EQ(bytes["wide_collapse"], 9 * 48u + 8 * 48 + 56 * 64);
@@ -108,7 +108,7 @@ TEST(Traffic, OfATraceOfTwoSamples) {
   counters.steps = {30000, 1};
   std::map<std::string, std::uint64_t> bytes;
   for (const Step& step : chain.steps()) {
-    if (step.stage) bytes[step.stage->name] += modelled_bytes(step, counts_of_trace(counters)).value();
+    if (stage_of(step)) bytes[stage_of(step)->name] += modelled_bytes(step, counts_of_trace(counters)).value();
   }
   EXPECT_EQ(bytes["camera_rays"], 2000u * 48);
   EXPECT_EQ(bytes["trace_closest"], 2000u * 64 + 64 * ((std::uint64_t{1} << 32) + 30000) + 500 * 36);
@@ -127,7 +127,7 @@ TEST(Traffic, OfAScanWithAndWithoutLookback) {
     append_scan(chain, plan);
     std::map<std::string, std::uint64_t> bytes;
     for (const Step& step : chain.steps()) {
-      if (step.stage) bytes[step.stage->name] += modelled_bytes(step, {}).value();
+      if (stage_of(step)) bytes[stage_of(step)->name] += modelled_bytes(step, {}).value();
     }
     EXPECT_EQ(bytes["scan_tile_sums"], lookback ? 0u : 160000u + 3 * 4);
     EXPECT_EQ(bytes["prefix_scan"], lookback ? 320000u + 3 * 24 : 320000u + 3 * 4 + 32 + 4);

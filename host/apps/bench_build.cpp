@@ -88,8 +88,8 @@ BenchRow bench_builder(CheckedDevice& device, const Options& options, const Name
 // The chain with a mark before the first round, so that the rounds have a time of their own.
 std::vector<Step> with_mark(std::vector<Step> steps) {
   const auto leaves =
-      std::ranges::find(steps, static_cast<const StageDeclaration*>(&stages::ploc_leaves), &Step::stage);
-  steps.insert(leaves, Step{});
+      std::ranges::find(steps, static_cast<const StageDeclaration*>(&stages::ploc_leaves), stage_of);
+  steps.insert(leaves, Mark{});
   return steps;
 }
 

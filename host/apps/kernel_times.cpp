@@ -12,8 +12,9 @@ namespace {
 std::vector<Step> measurable_steps(const GpuExecutor& executor, std::span<const Step> steps) {
   std::vector<Step> kept;
   for (const Step& step : steps) {
-    if (!step.stage && step.clear_bytes == 0) continue;
-    if (step.indirect && executor.read(Slot<uint>{step.place, 1})[0] == 0) continue;
+    if (std::holds_alternative<Mark>(step)) continue;
+    const Dispatch* const dispatch = dispatch_of(step);
+    if (dispatch && dispatch->indirect && executor.read(Slot<uint>{*dispatch->indirect, 1})[0] == 0) continue;
     kept.push_back(step);
   }
   return kept;
@@ -41,7 +42,7 @@ void print_row(const KernelTime& kernel, double share) {
 
 }  // namespace
 
-const char* step_name(const Step& step) { return step.stage ? step.stage->name : "clear"; }
+const char* step_name(const Step& step) { return stage_of(step) ? stage_of(step)->name : "clear"; }
 
 KernelSplit split_time(GpuExecutor& executor, std::span<const Step> steps, double limit_seconds) {
   KernelSplit split{measurable_steps(executor, steps), {}};

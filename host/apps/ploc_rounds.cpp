@@ -25,12 +25,12 @@ std::vector<PlocRoundTime> ploc_round_times(const KernelSplit& split, const RunC
   for (std::size_t i = 0; i < split.times.steps_ms.size(); ++i) {
     const Step& step = split.steps[i];
     const double ms = split.times.steps_ms[i];
-    if (step.stage == &stages::ploc_tile_counts || step.stage == &stages::ploc_tile_scan) {
+    if (stage_of(step) == &stages::ploc_tile_counts || stage_of(step) == &stages::ploc_tile_scan) {
       before_merge_ms += ms;
-    } else if (step.stage == &stages::ploc_merge) {
+    } else if (stage_of(step) == &stages::ploc_merge) {
       rows.push_back(row_of(counts.rounds, rows.size(), rows.size() + 1));
       rows.back().ms = std::exchange(before_merge_ms, 0.0) + ms;
-    } else if (step.stage == &stages::ploc_finish) {
+    } else if (stage_of(step) == &stages::ploc_finish) {
       rows.push_back(row_of(counts.rounds, rows.size(), counts.rounds.size() - 1));
       rows.back().finish = true;
       rows.back().ms = ms;

@@ -42,12 +42,12 @@ void trace_on_host(CpuExecutor& executor, const TreeSlots& tree, const TracePlan
     const auto piece_start = std::chrono::steady_clock::now();
     const std::uint64_t work = pieces.append(chain, pace.work());
     for (const Step& step : chain.steps()) {
-      if (step.stage != &stages::trace_closest) {
+      const TraceClosestArgs* const closest = args_of(step, stages::trace_closest);
+      if (!closest) {
         executor.run(step);
         continue;
       }
-      TraceClosestArgs args;
-      std::memcpy(&args, step.args.data(), sizeof args);
+      const TraceClosestArgs& args = *closest;
       const std::span<const Ray> rays(&args.rays[0], args.ray_count);
       const std::span<Hit> hits(&args.hits[0], args.ray_count);
       trace_all(bvh.nodes, triangles, rays, hits);

@@ -1,8 +1,6 @@
 #include "gpu/arena.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <new>
 #include <numeric>
@@ -67,15 +65,6 @@ void check_range(const Buffer& block, std::uint64_t offset, std::uint64_t bytes,
 
 }  // namespace
 
-void wait_for(const VulkanContext& context, const vk::raii::Fence& fence, double limit_seconds) {
-  const auto limit_ns = static_cast<std::uint64_t>(limit_seconds * 1e9);
-  if (context.device.waitForFences(*fence, true, limit_ns) != vk::Result::eTimeout) return;
-  // No exception: it would free what the device is still working with.
-  std::fprintf(stderr, "coppice: %s did not finish within %g s\n", context.properties.name.c_str(),
-               limit_seconds);
-  std::_Exit(1);
-}
-
 Arena::Arena(Device& device, const std::vector<std::uint64_t>& block_bytes)
     : blocks_(std::make_unique<Blocks>()) {
   using Usage = vk::BufferUsageFlagBits;
@@ -88,6 +77,7 @@ Arena::Arena(Device& device, const std::vector<std::uint64_t>& block_bytes)
     const auto usage = Usage::eStorageBuffer | Usage::eShaderDeviceAddress | Usage::eIndirectBuffer |
                        Usage::eTransferSrc | Usage::eTransferDst;
     blocks_->list.push_back(make_buffer(context, bytes, usage, shared ? host : Memory::eDeviceLocal));
+    addresses_.push_back(blocks_->list.back().address);
     if (shared) std::memset(blocks_->list.back().mapped, 0, bytes);
   }
   if (context.properties.type == DeviceType::cpu)
@@ -102,13 +92,7 @@ Arena::Arena(Device& device, const std::vector<std::uint64_t>& block_bytes)
   });
 }
 
-Arena::~Arena() = default;
-
-std::vector<std::uint64_t> Arena::block_addresses() const {
-  std::vector<std::uint64_t> addresses;
-  for (const Buffer& block : blocks_->list) addresses.push_back(block.address);
-  return addresses;
-}
+Arena::~Arena() { free_unless_hung(*blocks_->context, blocks_); }
 
 void Arena::upload(std::uint32_t block, std::uint64_t offset, std::span<const std::byte> bytes) {
   const Buffer& target = blocks_->list.at(block);

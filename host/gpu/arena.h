@@ -18,7 +18,7 @@ class Arena {
   Arena(Device& device, const std::vector<std::uint64_t>& block_bytes);
   ~Arena();
 
-  std::vector<std::uint64_t> block_addresses() const;
+  std::span<const std::uint64_t> block_addresses() const { return addresses_; }
 
   // Both throw DeviceError, and copy nothing, beyond the end of the block.
   void upload(std::uint32_t block, std::uint64_t offset, std::span<const std::byte> bytes);
@@ -29,6 +29,7 @@ class Arena {
 
  private:
   std::unique_ptr<Blocks> blocks_;
+  std::vector<std::uint64_t> addresses_;
 };
 
 }  // namespace coppice

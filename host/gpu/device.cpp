@@ -8,7 +8,7 @@
 #include "gpu/address_space.h"
 #include "gpu/no_driver.h"
 #include "gpu/pipeline_store.h"
-#include "gpu/vulkan_context.h"
+#include "gpu/suitability.h"
 
 namespace coppice {
 
@@ -17,21 +17,6 @@ namespace {
 constexpr const char* validation_layer = "VK_LAYER_KHRONOS_validation";
 // What a CPU driver, its compiler and a small scene take; with less some crash while they load.
 constexpr std::uint64_t least_address_space = std::uint64_t{640} << 20;
-
-DeviceType device_type(vk::PhysicalDeviceType type) {
-  switch (type) {
-    case vk::PhysicalDeviceType::eDiscreteGpu:
-      return DeviceType::discrete;
-    case vk::PhysicalDeviceType::eIntegratedGpu:
-      return DeviceType::integrated;
-    case vk::PhysicalDeviceType::eVirtualGpu:
-      return DeviceType::virtual_gpu;
-    case vk::PhysicalDeviceType::eCpu:
-      return DeviceType::cpu;
-    default:
-      return DeviceType::other;
-  }
-}
 
 VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT,
                                           VkDebugUtilsMessageTypeFlagsEXT,
@@ -61,81 +46,6 @@ vk::raii::Instance make_instance(const vk::raii::Context& loader, bool validate)
   }
   info.setPEnabledLayerNames(layers).setPEnabledExtensionNames(extensions);
   return vk::raii::Instance(loader, info);
-}
-
-using FeatureChain = vk::StructureChain<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features,
-                                        vk::PhysicalDeviceVulkan13Features>;
-
-// What the kernels need, one line a feature.
-template <class Visit>
-void for_each_feature(FeatureChain& chain, Visit visit) {
-  auto& vulkan12 = chain.get<vk::PhysicalDeviceVulkan12Features>();
-  auto& vulkan13 = chain.get<vk::PhysicalDeviceVulkan13Features>();
-  visit(chain.get<vk::PhysicalDeviceFeatures2>().features.shaderInt64, "shaderInt64");
-  visit(vulkan12.bufferDeviceAddress, "bufferDeviceAddress");
-  visit(vulkan12.scalarBlockLayout, "scalarBlockLayout");
-  visit(vulkan13.synchronization2, "synchronization2");
-  visit(vulkan13.maintenance4, "maintenance4");
-  visit(vulkan13.subgroupSizeControl, "subgroupSizeControl");
-  visit(vulkan13.computeFullSubgroups, "computeFullSubgroups");
-}
-
-std::string why_unsuitable(const vk::raii::PhysicalDevice& physical) {
-  const auto properties =
-      physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties,
-                              vk::PhysicalDeviceVulkan12Properties, vk::PhysicalDeviceVulkan13Properties>();
-  const auto& core = properties.get<vk::PhysicalDeviceProperties2>().properties;
-  if (core.apiVersion < VK_API_VERSION_1_3) return "no Vulkan 1.3";
-  const auto& subgroups = properties.get<vk::PhysicalDeviceVulkan11Properties>();
-  const auto needed = vk::SubgroupFeatureFlagBits::eBasic | vk::SubgroupFeatureFlagBits::eVote |
-                      vk::SubgroupFeatureFlagBits::eArithmetic | vk::SubgroupFeatureFlagBits::eBallot |
-                      vk::SubgroupFeatureFlagBits::eShuffle;
-  if ((subgroups.subgroupSupportedOperations & needed) != needed) return "no subgroup arithmetic or shuffle";
-  if (subgroups.subgroupSize < 4) return "subgroups of fewer than 4 invocations";
-  if (subgroups.subgroupSize > 64) return "subgroups of more than 64 invocations";
-  const auto& sizes = properties.get<vk::PhysicalDeviceVulkan13Properties>();
-  if (sizes.minSubgroupSize < sizes.maxSubgroupSize &&
-      !(sizes.requiredSubgroupSizeStages & vk::ShaderStageFlagBits::eCompute))
-    return "subgroups of several sizes, and none can be required";
-  const auto& floats = properties.get<vk::PhysicalDeviceVulkan12Properties>();
-  if (!floats.shaderRoundingModeRTEFloat32) return "no rounding to nearest even";
-  if (!floats.shaderSignedZeroInfNanPreserveFloat32) return "no infinities and NaN";
-  if (core.limits.maxComputeWorkGroupInvocations < 256) return "no workgroups of 256 invocations";
-  if (core.limits.maxComputeSharedMemorySize < 32768) return "less than 32 KiB of shared memory";
-  auto features = physical.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features,
-                                        vk::PhysicalDeviceVulkan13Features>();
-  std::string missing;
-  for_each_feature(features, [&](vk::Bool32& supported, const char* name) {
-    if (!supported && missing.empty()) missing = std::string("no ") + name;
-  });
-  return missing;
-}
-
-DeviceListing listing_of(const vk::raii::PhysicalDevice& physical, std::uint32_t index) {
-  const auto properties =
-      physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>();
-  const auto& core = properties.get<vk::PhysicalDeviceProperties2>().properties;
-  const auto& driver = properties.get<vk::PhysicalDeviceDriverProperties>();
-  return {index, core.deviceName.data(), driver.driverInfo.data(), device_type(core.deviceType),
-          why_unsuitable(physical)};
-}
-
-std::uint32_t choose_device(const std::vector<DeviceListing>& devices, const std::string& select) {
-  if (devices.empty()) throw DeviceError(why_no_device());
-  std::uint32_t index = 0;
-  const auto [end, error] = std::from_chars(select.data(), select.data() + select.size(), index);
-  const bool is_index = !select.empty() && error == std::errc() && end == select.data() + select.size();
-  const DeviceListing* best = nullptr;
-  std::string reason;
-  for (const DeviceListing& device : devices) {
-    const bool wanted = is_index ? device.index == index : device.name.find(select) != std::string::npos;
-    if (wanted && !device.unsuitable_because.empty()) reason = device.name + ": " + device.unsuitable_because;
-    if (!wanted || !device.unsuitable_because.empty()) continue;
-    if (!best || device.type < best->type) best = &device;
-  }
-  if (best) return best->index;
-  if (!reason.empty()) throw DeviceError("unsuitable device: " + reason);
-  throw DeviceError("--device: no device '" + select + "' (see 'coppice devices')");
 }
 
 // Mesa's lavapipe 22.3 ends long loops silently, 25.0 does not; those between are taken to. docs/numerics.md,
@@ -181,6 +91,21 @@ DeviceProperties describe(const VulkanContext& context, std::uint32_t timestamp_
   return properties;
 }
 
+// Of a device, whoever made it: what is recorded and submitted with, and what is known of it.
+void equip(VulkanContext& context) {
+  context.command_pool = vk::raii::CommandPool(context.device, {{}, context.queue_family}, context.allocator);
+  const vk::SemaphoreTypeCreateInfo timeline(vk::SemaphoreType::eTimeline, 0);
+  context.timeline =
+      vk::raii::Semaphore(context.device, vk::SemaphoreCreateInfo({}, &timeline), context.allocator);
+  const vk::PushConstantRange push(vk::ShaderStageFlagBits::eCompute, 0, 128);
+  context.pipeline_layout =
+      vk::raii::PipelineLayout(context.device, vk::PipelineLayoutCreateInfo({}, {}, push), context.allocator);
+  const auto families = context.physical.getQueueFamilyProperties();
+  const std::uint32_t bits = context.timestamps ? families.at(context.queue_family).timestampValidBits : 0;
+  context.timestamp_mask = bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
+  context.properties = describe(context, bits);
+}
+
 void make_device(VulkanContext& context) {
   const auto families = context.physical.getQueueFamilyProperties();
   const auto family = std::ranges::find_if(
@@ -188,21 +113,44 @@ void make_device(VulkanContext& context) {
   if (family == families.end()) throw DeviceError("device without a compute queue");
   context.queue_family = static_cast<std::uint32_t>(family - families.begin());
 
-  FeatureChain features;
-  for_each_feature(features, [](vk::Bool32& enable, const char*) { enable = VK_TRUE; });
+  const FeatureChain features = required_features();
   const float priority = 1;
   const vk::DeviceQueueCreateInfo queue({}, context.queue_family, 1, &priority);
   vk::DeviceCreateInfo info({}, queue);
   info.pNext = &features.get<vk::PhysicalDeviceFeatures2>();
   context.device = vk::raii::Device(context.physical, info);
   context.queue = context.device.getQueue(context.queue_family, 0);
-  context.command_pool = vk::raii::CommandPool(context.device, {{}, context.queue_family});
-  const vk::PushConstantRange push(vk::ShaderStageFlagBits::eCompute, 0, 128);
-  context.pipeline_layout =
-      vk::raii::PipelineLayout(context.device, vk::PipelineLayoutCreateInfo({}, {}, push));
-  const std::uint32_t bits = context.timestamps ? family->timestampValidBits : 0;
-  context.timestamp_mask = bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
-  context.properties = describe(context, bits);
+  equip(context);
+}
+
+// The handles of the caller's device, given back by ~VulkanContext.
+void take_device(VulkanContext& context, const AdoptedDevice& given) {
+  if (!given.instance || !given.physical_device || !given.device)
+    throw DeviceError("an adopted device needs an instance, a physical device and a device");
+  context.adopted = true;
+  context.allocator = reinterpret_cast<const vk::AllocationCallbacks*>(given.allocator);
+  context.instance = vk::raii::Instance(context.loader, given.instance);
+  context.physical = vk::raii::PhysicalDevice(context.instance, given.physical_device);
+  const std::string name = context.physical.getProperties().deviceName.data();
+  if (const std::string reason = why_unsuitable(context.physical); !reason.empty())
+    throw DeviceError("unsuitable device: " + name + ": " + reason);
+  if (!given.enabled_features)
+    throw DeviceError(name +
+                      ": enabled_features is null; which features the device was made with is not known");
+  if (const std::string feature = missing_feature(*given.enabled_features); !feature.empty())
+    throw DeviceError(name + ": the feature " + feature + " is not enabled");
+  const auto families = context.physical.getQueueFamilyProperties();
+  if (given.queue_family >= families.size() ||
+      !(families[given.queue_family].queueFlags & vk::QueueFlagBits::eCompute))
+    throw DeviceError(name + ": the queue family " + std::to_string(given.queue_family) + " cannot compute");
+  context.queue_family = given.queue_family;
+  context.device = vk::raii::Device(context.physical, given.device);
+  if (given.queue) context.queue = vk::raii::Queue(context.device, given.queue);
+  equip(context);
+  if (given.pipeline_cache) {
+    context.adopted_cache = true;
+    context.pipeline_cache = vk::raii::PipelineCache(context.device, given.pipeline_cache);
+  }
 }
 
 }  // namespace
@@ -224,7 +172,7 @@ std::vector<DeviceListing> list_devices() {
   check_address_space(least_address_space, "");
   std::vector<DeviceListing> devices;
   try {
-    const vk::raii::Context loader;
+    const vk::raii::Context loader(loader_entry());
     const vk::raii::Instance instance = make_instance(loader, false);
     for (const auto& physical : vk::raii::PhysicalDevices(instance)) {
       devices.push_back(listing_of(physical, static_cast<std::uint32_t>(devices.size())));
@@ -237,21 +185,56 @@ std::vector<DeviceListing> list_devices() {
 
 namespace {
 
-std::unique_ptr<VulkanContext> make_context() {
-  check_address_space(least_address_space, "");
+// What goes wrong while a device is made or taken, as a DeviceError.
+template <class Action>
+void in_one_line(Action action) {
   try {
-    return std::make_unique<VulkanContext>();
-  } catch (const std::runtime_error&) {  // no loader
+    action();
+  } catch (const DeviceError&) {
+    throw;
+  } catch (const vk::IncompatibleDriverError&) {
     throw DeviceError(why_no_device());
+  } catch (const std::runtime_error& error) {
+    throw DeviceError(std::string("Vulkan: ") + error.what());
   }
 }
 
 }  // namespace
 
-Device::Device(const DeviceOptions& options) : context_(make_context()) {
+VulkanContext::~VulkanContext() {
+  if (!adopted) return;
+  pipelines.clear();
+  pipeline_layout.clear();
+  timeline.clear();
+  command_pool.clear();
+  if (adopted_cache) {
+    (void)pipeline_cache.release();
+  } else {
+    pipeline_cache.clear();
+  }
+  queue = nullptr;
+  (void)device.release();
+  physical = nullptr;
+  (void)instance.release();
+}
+
+Device::Device(const AdoptedDevice& device, std::filesystem::path pipeline_folder, Log log)
+    : context_(std::make_unique<VulkanContext>(device.get_instance_proc_addr ? device.get_instance_proc_addr
+                                                                             : loader_entry())) {
+  context_->log = std::move(log);
+  in_one_line([&] {
+    take_device(*context_, device);
+    load_pipelines(*context_, pipeline_folder);
+  });
+}
+
+Device::Device(const DeviceOptions& options) {
+  check_address_space(least_address_space, "");
+  context_ = std::make_unique<VulkanContext>(loader_entry());
   VulkanContext& context = *context_;
+  context.log = options.log;
   context.like_a_gpu = options.like_a_gpu;
-  try {
+  in_one_line([&] {
     const char* const no_timestamps = std::getenv("COPPICE_NO_TIMESTAMPS");
     context.timestamps = options.timestamps && !(no_timestamps && *no_timestamps);
     context.instance = make_instance(context.loader, options.validate);
@@ -273,21 +256,31 @@ Device::Device(const DeviceOptions& options) : context_(make_context()) {
     context.physical = std::move(all[choose_device(listings, options.select)]);
     make_device(context);
     load_pipelines(context, options.pipeline_folder);
-  } catch (const DeviceError&) {
-    throw;
-  } catch (const vk::IncompatibleDriverError&) {
-    throw DeviceError(why_no_device());
-  } catch (const std::runtime_error& error) {
-    throw DeviceError(std::string("Vulkan: ") + error.what());
-  }
+  });
 }
 
 Device::~Device() {
-  if (context_) store_pipelines(*context_);
+  if (!context_) return;
+  if (!context_->hung) store_pipelines(*context_);
+  free_unless_hung(*context_, context_);
 }
 Device::Device(Device&&) noexcept = default;
 
 const DeviceProperties& Device::properties() const { return context_->properties; }
+
+VkInstance Device::instance() const { return *context_->instance; }
+VkPhysicalDevice Device::physical_device() const { return *context_->physical; }
+VkDevice Device::device() const { return *context_->device; }
+VkQueue Device::queue() const { return *context_->queue; }
+std::uint32_t Device::queue_family() const { return context_->queue_family; }
+
+std::uint64_t Device::address_of(VkBuffer buffer) const {
+  return vk::Device(*context_->device).getBufferAddress({buffer}, *context_->device.getDispatcher());
+}
+
+void Device::say(const std::string& line) const {
+  if (context_->log) context_->log(line);
+}
 
 bool Device::has_kept_pipelines() const { return !context_->kept_pipelines.empty(); }
 

@@ -3,17 +3,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
-namespace coppice {
+#include "coppice/context.h"
 
-// Whatever goes wrong with a device, in one line; no other exception leaves this folder but std::bad_alloc.
-struct DeviceError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
+// Of what goes wrong in this folder no exceptions leave it but DeviceError and std::bad_alloc.
+namespace coppice {
 
 enum class DeviceType { discrete, integrated, virtual_gpu, cpu, other };
 const char* to_string(DeviceType type);
@@ -40,6 +37,7 @@ struct DeviceOptions {
   // Off: as a device without timestamps, for tests. Off, too, where COPPICE_NO_TIMESTAMPS is set and not
   // empty.
   bool timestamps = true;
+  Log log{};
 };
 
 struct DeviceProperties {
@@ -67,6 +65,9 @@ class Device {
  public:
   // Throws DeviceError if there is no such device, or it lacks what the kernels need.
   explicit Device(const DeviceOptions& options = {});
+  // The caller's device, as it is documented there; compiled pipelines are kept in the folder, as above,
+  // unless there is a cache of the caller's.
+  Device(const AdoptedDevice& device, std::filesystem::path pipeline_folder, Log log);
   ~Device();
   Device(Device&&) noexcept;
 
@@ -81,7 +82,17 @@ class Device {
   // A file beside the pipelines for what else is kept of this device and driver; empty where nothing is kept.
   std::filesystem::path kept_file(std::string_view stem) const;
 
-  VulkanContext& context() { return *context_; }
+  VkInstance instance() const;
+  VkPhysicalDevice physical_device() const;
+  VkDevice device() const;
+  VkQueue queue() const;  // null where none was given
+  std::uint32_t queue_family() const;
+  std::uint64_t address_of(VkBuffer buffer) const;
+
+  // One line to the log, if there is one.
+  void say(const std::string& line) const;
+
+  VulkanContext& context() const { return *context_; }
 
  private:
   std::unique_ptr<VulkanContext> context_;

@@ -1,17 +1,22 @@
 #include "gpu/no_driver.h"
 
+#include <dlfcn.h>
+
 #include <cstdlib>
 
 #include "gpu/vulkan_context.h"
 
 namespace coppice {
 
+PFN_vkGetInstanceProcAddr loader_entry() {
+  // Never closed: drivers leave threads and handlers behind.
+  static void* const library = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);
+  void* const entry = library ? dlsym(library, "vkGetInstanceProcAddr") : nullptr;
+  if (!entry) throw DeviceError("no Vulkan loader, libvulkan.so.1: install the Debian package libvulkan1");
+  return reinterpret_cast<PFN_vkGetInstanceProcAddr>(entry);
+}
+
 std::string why_no_device() {
-  try {
-    const vk::raii::Context loader;
-  } catch (const std::exception&) {
-    return "no Vulkan loader, libvulkan.so.1: install the Debian package libvulkan1";
-  }
   std::string settings;  // each can keep the loader from drivers that are there
   for (const char* const name :
        {"VK_DRIVER_FILES", "VK_ICD_FILENAMES", "VK_LOADER_DRIVERS_SELECT", "VK_LOADER_DRIVERS_DISABLE"}) {

@@ -88,15 +88,16 @@ std::string file_name_of(std::string_view stem, const vk::raii::PhysicalDevice& 
 }
 
 void load_pipelines(VulkanContext& context, const fs::path& folder) {
-  if (folder.empty()) return;
+  if (folder.empty() || context.adopted_cache) return;
   context.pipeline_file = folder / file_name_of("pipelines", context.physical);
   context.kept_pipelines = read_blob(context.pipeline_file, context.physical.getProperties());
   const std::vector<std::uint8_t>& blob = context.kept_pipelines;
-  context.pipeline_cache = vk::raii::PipelineCache(context.device, {{}, blob.size(), blob.data()});
+  context.pipeline_cache =
+      vk::raii::PipelineCache(context.device, {{}, blob.size(), blob.data()}, context.allocator);
 }
 
 void store_pipelines(const VulkanContext& context) noexcept {
-  if (!*context.pipeline_cache || context.pipelines.empty()) return;
+  if (context.pipeline_file.empty() || context.pipelines.empty()) return;
   try {
     const std::vector<std::uint8_t> blob = context.pipeline_cache.getData();
     if (blob != context.kept_pipelines) write_blob(context.pipeline_file, blob);

@@ -1,28 +1,22 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "gpu/arena.h"
+#include "gpu/command_writer.h"
 
 namespace coppice {
 
-struct Kernel {
-  const char* name;
-  std::span<const std::uint32_t> spirv;
-  std::span<const std::uint32_t> specialization;  // constants 0, 1, ...
-};
-
 enum class Timestamps { total, every_step };
 
-// Records steps into one command buffer that can be submitted again and again. A barrier precedes every step.
+// Records steps into one command buffer of its own that can be submitted again and again; they are ordered as
+// those of a CommandWriter.
 class Recorder {
  public:
-  // `step_limit`: at most so many steps will be recorded.
+  // `step_limit`: at most so many steps and marks will be recorded.
   Recorder(Device& device, const Arena& arena, std::uint32_t step_limit, Timestamps timestamps);
   ~Recorder();
   Recorder(Recorder&&) noexcept;
@@ -43,9 +37,17 @@ class Recorder {
     std::vector<double> steps_ms;  // each step, in order; empty unless Timestamps::every_step, too
   };
 
-  // Ends the recording at the first call. A device that is not done within the limit ends the program, with
-  // one line.
-  Times submit_and_wait(double limit_seconds);
+  // Ends the recording at the first call; the submit before must be done. Returns the value of the device's
+  // timeline when this one is.
+  std::uint64_t submit();
+
+  // Waits for the last submit and tells its times. Throws DeviceHung after the limit.
+  Times wait(double limit_seconds);
+
+  Times submit_and_wait(double limit_seconds) {
+    submit();
+    return wait(limit_seconds);
+  }
 
  private:
   struct Commands;

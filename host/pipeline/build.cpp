@@ -48,9 +48,8 @@ void append_onesweep(Chain& chain, const BuildPlan& plan) {
   chain.run(stages::sort_histogram, {chain.at(plan.unsorted_keys), chain.at(plan.histogram), n, key_words},
             groups_of(n, SORT_HISTOGRAM_TILE, key_words));
   chain.run(stages::sort_digit_scan, {chain.at(plan.histogram), sort.passes, 0}, {sort.passes, 1, 1});
-  std::vector<std::uint32_t> constants = lookback_constants(plan.options);
-  constants.insert(constants.end(),
-                   {sort.match, sort.match ? SORT_MATCH_GROUP : SORT_RUNS_GROUP, has_values(plan)});
+  const SortPassConstants constants{lookback_constants(plan.options), sort.match,
+                                    sort.match ? SORT_MATCH_GROUP : SORT_RUNS_GROUP, has_values(plan)};
   for (std::uint32_t pass = 0; pass < sort.passes; ++pass) {
     const int in = (sort.passes - pass) % 2, out = 1 - in;
     chain.run(stages::sort_pass,
@@ -84,7 +83,7 @@ void append_scanned_sort(Chain& chain, const BuildPlan& plan) {
       chain.run(stages::sort_tile_scan, {args.tile_digits, sort.tile_count, bits}, {1, 1, 1}, {bits});
     }
     chain.run(stages::sort_scatter, args, {sort.tile_count, 1, 1},
-              {bits, key_words, has_values(plan), one_tile});
+              {{bits, key_words}, has_values(plan), one_tile});
   }
 }
 
@@ -114,8 +113,7 @@ void append_round(Chain& chain, const BuildPlan& plan, std::uint32_t round) {
                            plan.options.radius,
                            0};
   const Place merge_groups = groups(offsetof(PlocRound, merge_groups));
-  std::vector<std::uint32_t> constants = lookback_constants(plan.options);
-  constants.push_back(plan.options.radius);
+  const PlocMergeConstants constants{lookback_constants(plan.options), plan.options.radius};
   if (!plan.options.lookback) {
     chain.run_indirect(stages::ploc_tile_counts, args, merge_groups, constants);
     chain.run_indirect(stages::ploc_tile_scan, {status, chain.at(plan.rounds), round, 0},
@@ -150,7 +148,7 @@ void append_hploc(Chain& chain, const BuildPlan& plan) {
 
 }  // namespace
 
-std::vector<std::uint32_t> lookback_constants(const BuildOptions& options) {
+LookbackConstants lookback_constants(const BuildOptions& options) {
   return {options.lookback_turns, options.lookback_max_fallbacks, options.lookback_stress};
 }
 

@@ -91,8 +91,7 @@ struct BuildPlan : TreeSlots {
 // The most triangles of a build: Vulkan promises 65,535 workgroups a dispatch.
 inline constexpr std::uint32_t max_triangles = 65535u * PLOC_MERGE_TILE;
 
-// The constants of a kernel with lookback.
-std::vector<std::uint32_t> lookback_constants(const BuildOptions& options);
+LookbackConstants lookback_constants(const BuildOptions& options);
 
 // Rounds of PLOC that reduce `clusters` clusters to at most `target`, at worst; proved in docs/numerics.md.
 std::uint32_t ploc_rounds_bound(std::uint32_t clusters, std::uint32_t target);

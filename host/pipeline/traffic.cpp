@@ -11,12 +11,6 @@ namespace {
 
 using Bytes = std::uint64_t;
 
-// The arguments of a step of this stage; null for a step of another.
-template <class Args>
-const Args* args_of(const Step& step, const Stage<Args>& stage) {
-  return step.stage == &stage ? reinterpret_cast<const Args*>(step.args.data()) : nullptr;
-}
-
 // None of nothing, whatever the size of a tile.
 Bytes tiles(Bytes count, Bytes tile) { return count == 0 ? 0 : divide_up(count, tile); }
 
@@ -81,7 +75,7 @@ std::optional<Bytes> ploc_bytes(const Step& step, const RunCounts& counts) {
     const bool dispatched = index < counts.rounds.size() && counts.rounds[index].merge_groups.x != 0;
     return dispatched ? counts.rounds[index] : PlocRound{};
   };
-  if (step.stage == &stages::ploc_leaves)
+  if (stage_of(step) == &stages::ploc_leaves)
     return Bytes{counts.active_count} * (4 + sizeof(Aabb) + sizeof(Node));
   if (const auto* a = args_of(step, stages::ploc_merge)) {
     const PlocRound merged = round(a->round);
@@ -90,7 +84,7 @@ std::optional<Bytes> ploc_bytes(const Step& step, const RunCounts& counts) {
   if (const auto* a = args_of(step, stages::ploc_tile_counts)) return tile_counts_bytes(round(a->round));
   if (const auto* a = args_of(step, stages::ploc_tile_scan))
     return Bytes{round(a->round).merge_groups.x} * 24;
-  if (step.stage == &stages::ploc_finish) return finish_bytes(counts);
+  if (stage_of(step) == &stages::ploc_finish) return finish_bytes(counts);
   // A leaf is read in sorted order, and all nodes are written once; what tiles hand over is little beside it.
   if (const auto* a = args_of(step, stages::hploc_build))
     return Bytes{counts.active_count} * (4 + 4 * a->key_words + sizeof(Aabb) + 2 * sizeof(Node));
@@ -109,13 +103,13 @@ std::optional<Bytes> wide_bytes(const Step& step, const RunCounts& counts) {
   const auto level = [&](std::uint32_t index) {
     return index < counts.wide_levels.size() ? Bytes{counts.wide_levels[index].count} : 0;
   };
-  if (step.stage == &stages::wide_root) return collapse_bytes(level(0), counts);
+  if (stage_of(step) == &stages::wide_root) return collapse_bytes(level(0), counts);
   if (const auto* a = args_of(step, stages::wide_collapse))
     return level(a->level) * (WIDE_CHILDREN * 4 + sizeof(WideEntry)) +
            collapse_bytes(level(a->level + 1), counts);
   if (const auto* a = args_of(step, stages::wide_sizes))
     return level(a->level) * (sizeof(WideEntry) + 4) + level(a->level + 1) * (4 + 4);
-  if (step.stage == &stages::wide_quantise) {
+  if (stage_of(step) == &stages::wide_quantise) {
     if (nodes == 0) return 0;
     const Bytes children =
         counts.active_count + nodes - 1;  // each leaf and each wide node but the root is one
@@ -177,7 +171,8 @@ RunCounts counts_of_trace(const TraceCounters& counters) {
 }
 
 std::optional<std::uint64_t> modelled_bytes(const Step& step, const RunCounts& counts) {
-  if (!step.stage) return step.clear_bytes;
+  if (const Clear* const clear = std::get_if<Clear>(&step)) return clear->bytes;
+  if (std::holds_alternative<Mark>(step)) return 0;
   if (const auto* a = args_of(step, stages::copy_words)) return Bytes{a->quad_count} * 2 * sizeof(uvec4);
   if (const auto* a = args_of(step, stages::scan_tile_sums))
     return Bytes{a->quad_count} * sizeof(uvec4) + tiles(a->quad_count, SCAN_TILE) * 4;

@@ -13,7 +13,7 @@ class CpuExecutor {
  public:
   explicit CpuExecutor(const Layout& layout);
 
-  Chain chain() const;
+  Chain chain() const { return Chain(addresses_); }
 
   // A mark, or an indirect dispatch whose number of workgroups is now 0.
   bool does_nothing(const Step& step) const;
@@ -43,6 +43,7 @@ class CpuExecutor {
 
  private:
   std::vector<std::unique_ptr<std::uint64_t[]>> blocks_;
+  std::vector<std::uint64_t> addresses_;
 };
 
 }  // namespace coppice

@@ -137,8 +137,8 @@ std::optional<Difference> LockstepExecutor::run(const std::function<void(Chain&)
     while (nothing && end < cpu_steps.size() && cpu_.does_nothing(cpu_steps[end])) ++end;
     gpu_.record(gpu_steps.subspan(i, end - i)).submit_and_wait(step_limit_seconds);
     cpu_.run(cpu_steps.subspan(i, end - i));
-    for (const Step& step : cpu_steps.subspan(i, end - i)) stages_run_ += step.stage ? 1 : 0;
-    const StageDeclaration* const stage = nothing ? nullptr : cpu_steps[i].stage;
+    for (const Step& step : cpu_steps.subspan(i, end - i)) stages_run_ += stage_of(step) ? 1 : 0;
+    const StageDeclaration* const stage = nothing ? nullptr : stage_of(cpu_steps[i]);
     const char* const name = nothing ? "steps of no workgroups" : stage ? stage->name : "clear";
     if (auto difference = compare(stage, name)) return difference;
   }

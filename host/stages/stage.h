@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <cstring>
 #include <span>
+#include <type_traits>
 
 namespace coppice {
 
@@ -24,8 +27,33 @@ struct StageDeclaration {
   std::span<const NearlySlot> nearly;
 };
 
-// The same, typed by its Args struct.
-template <class Args>
+// The same, typed by its Args struct and by the struct of its kernel's specialization constants 0, 1, ...,
+// a word each.
+template <class Args, class Constants>
 struct Stage : StageDeclaration {};
+
+// Of a kernel that has none.
+struct NoConstants {};
+
+// Specialization constants 0, 1, ... of a kernel.
+struct KernelConstants {
+  std::array<std::uint32_t, 8> words{};
+  std::uint32_t count = 0;
+
+  KernelConstants() = default;
+
+  template <class Constants>
+  explicit KernelConstants(const Constants& constants) {
+    static_assert(std::is_trivially_copyable_v<Constants>);
+    if constexpr (!std::is_empty_v<Constants>) {
+      static_assert(sizeof(Constants) <= sizeof words && sizeof(Constants) % 4 == 0);
+      count = sizeof(Constants) / 4;
+      std::memcpy(words.data(), &constants, sizeof(Constants));
+    }
+  }
+
+  std::span<const std::uint32_t> span() const { return {words.data(), count}; }
+  auto operator<=>(const KernelConstants&) const = default;
+};
 
 }  // namespace coppice

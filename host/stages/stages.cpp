@@ -4,15 +4,15 @@
 
 namespace coppice {
 
-#define COPPICE_DEFINE_STAGE(stem, Args, nearly)                                                             \
-  const Stage<Args> stages::stem{                                                                            \
+#define COPPICE_DEFINE_STAGE(stem, Args, Constants, nearly)                                                  \
+  const Stage<Args, Constants> stages::stem{                                                                 \
       {#stem, spirv::stem, [](const void* args) { twins::stem(*static_cast<const Args*>(args)); }, nearly}}; \
   static_assert(sizeof(Args) <= 128 && sizeof(Args) % 8 == 0, "push constants of " #stem);
 COPPICE_STAGES(COPPICE_DEFINE_STAGE)
 #undef COPPICE_DEFINE_STAGE
 
 std::span<const StageDeclaration* const> all_stages() {
-#define COPPICE_LIST_STAGE(stem, Args, nearly) &stages::stem,
+#define COPPICE_LIST_STAGE(stem, Args, Constants, nearly) &stages::stem,
   static constexpr const StageDeclaration* list[] = {COPPICE_STAGES(COPPICE_LIST_STAGE)};
 #undef COPPICE_LIST_STAGE
   return list;

@@ -48,5 +48,10 @@ struct HplocBuildArgs {
   uint padding;
 };
 
+struct HplocBuildConstants {
+  uint cluster_limit;
+  uint radius;
+};
+
 INTERFACE_END
 #endif

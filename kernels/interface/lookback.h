@@ -15,5 +15,12 @@ const uint LOOKBACK_WITHHELD = 2;
 // sums nor those that they found for others.
 const uint LOOKBACK_SILENT_SHIFT = 8;
 
+// Specialization constants of kernels with lookback, before their own.
+struct LookbackConstants {
+  uint turns;          // of LOOKBACK_POLLS polls each, before a tile sums up its predecessor itself
+  uint max_fallbacks;  // a tile that would have to sum up more of them gives up
+  uint stress;         // bits as above
+};
+
 INTERFACE_END
 #endif

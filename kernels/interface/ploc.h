@@ -2,7 +2,7 @@
 // Construction", 2018.
 #ifndef COPPICE_INTERFACE_PLOC_H
 #define COPPICE_INTERFACE_PLOC_H
-#include "types.h"
+#include "lookback.h"
 INTERFACE_BEGIN
 
 const uint PLOC_MAX_RADIUS = 100;
@@ -83,6 +83,15 @@ struct PlocFinishArgs {
   PlocRoundBuffer rounds;
   uint radius;
   uint rounds_bound;
+};
+
+struct PlocMergeConstants {
+  LookbackConstants lookback;
+  uint radius;
+};
+
+struct PlocFinishConstants {
+  uint radius;
 };
 
 INTERFACE_END

@@ -2,6 +2,7 @@
 #ifndef COPPICE_INTERFACE_SCAN_H
 #define COPPICE_INTERFACE_SCAN_H
 #include "copy.h"
+#include "lookback.h"
 INTERFACE_BEGIN
 
 // One invocation sums, and then scans, a run of consecutive quads of words serially: the fastest on CPU

@@ -4,7 +4,7 @@
 // digit), which never wait.
 #ifndef COPPICE_INTERFACE_SORT_H
 #define COPPICE_INTERFACE_SORT_H
-#include "types.h"
+#include "lookback.h"
 INTERFACE_BEGIN
 
 // Of Onesweep.
@@ -78,6 +78,29 @@ struct SortTileScanArgs {
   UintBuffer tile_digits;  // tiles << digit_bits counts, replaced by exclusive sums over (digit, tile)
   uint tile_count;
   uint digit_bits;
+};
+
+// Specialization constants; what is an argument, too, has the same value there.
+struct SortPassConstants {
+  LookbackConstants lookback;
+  uint rank_by_match;
+  uint group;       // invocations of a workgroup
+  uint has_values;  // 0: of keys alone
+};
+
+struct SortTileScanConstants {
+  uint digit_bits;
+};
+
+struct SortTileConstants {
+  uint digit_bits;
+  uint key_words;
+};
+
+struct SortScatterConstants {
+  SortTileConstants tile;
+  uint has_values;
+  uint one_tile;  // count <= tile_keys: it counts and scans for itself
 };
 
 INTERFACE_END

@@ -166,5 +166,27 @@ struct ResolveArgs {
   uint ray_count;
 };
 
+// Specialization constants; what is an argument, too, has the same value there.
+struct TraceClosestConstants {
+  uint max_turns;        // of the loop; a tree has fewer pairs than triangles, so this binds only on a driver
+                         // that ends long loops by itself
+  uint visits_per_turn;  // pairs
+  uint stack_entries;
+  uint triangle_test;
+  uint box_test;
+};
+
+struct TraceWideConstants {
+  uint max_turns;
+};
+
+struct TraceBruteForceConstants {
+  uint triangle_test;
+};
+
+struct ShadeConstants {
+  uint directional_light;  // 0 where the scene has none
+};
+
 INTERFACE_END
 #endif

@@ -1,0 +1,86 @@
+/* What lies in the memory that Coppice writes and reads: C and C++. The formats are described in
+   docs/tree_format.md; those of a version do not change. */
+#ifndef COPPICE_TYPES_H
+#define COPPICE_TYPES_H
+
+#include <stdint.h>
+
+#define COPPICE_VERSION_MAJOR 0
+#define COPPICE_VERSION_MINOR 2
+#define COPPICE_VERSION_PATCH 0
+
+/* Of the trees, rays and hits below. */
+#define COPPICE_FORMAT_VERSION 1
+
+/* Of every address and offset of memory that is given to the library as a MemoryRange. */
+#define COPPICE_MEMORY_ALIGNMENT 256
+
+/* A triangle by its corners. */
+typedef struct CoppiceTriangle {
+  float a[3], b[3], c[3];
+} CoppiceTriangle;
+
+typedef struct CoppiceBox {
+  float box_min[3], box_max[3];
+} CoppiceBox;
+
+/* Of the binary tree. Root at 0; the children of an internal node are neighbours. */
+typedef struct CoppiceNode {
+  float box_min[3];
+  uint32_t child; /* leaf: primitive; internal node: its first child, the second follows it */
+  float box_max[3];
+  uint32_t height; /* 0 for a leaf, else 1 + the larger height of the children */
+} CoppiceNode;
+
+#define COPPICE_WIDE_LEAF 0x80000000u  /* in a child word: the rest is a primitive; else a wide node */
+#define COPPICE_WIDE_EMPTY 0xffffffffu /* no child */
+
+/* Of the wide tree, root at 0: after Ylitie, Karras and Laine 2017. Child c has the bytes 6 c to 6 c + 5 of
+   `planes`: min x, y, z, max x, y, z. A byte q of an axis is the plane origin + q * step, and the step is the
+   power of two with the axis' byte of `exponents` (x lowest) as biased exponent. */
+typedef struct CoppiceWideNode {
+  float origin[3];
+  uint32_t exponents;
+  uint8_t planes[48];
+  uint32_t child[8];
+} CoppiceWideNode;
+
+/* A ray hits nothing with a NaN, an infinite origin or direction, t_min > t_max, or a zero direction. */
+typedef struct CoppiceRay {
+  float origin[3];
+  float t_min;
+  float direction[3]; /* any length; t is in units of it */
+  float t_max;        /* may be infinite */
+} CoppiceRay;
+
+#define COPPICE_NO_PRIMITIVE 0xffffffffu
+
+/* Of equally close triangles the one with the smallest index. */
+typedef struct CoppiceHit {
+  float t;            /* t_max of the ray for a miss */
+  uint32_t primitive; /* COPPICE_NO_PRIMITIVE for a miss */
+  float u, v;         /* barycentric coordinates of corners b and c */
+} CoppiceHit;
+
+/* What a build says of itself, at TreeAddresses::state. */
+typedef struct CoppiceTreeState {
+  uint32_t bounds[3];
+  uint32_t active_count; /* primitives in the tree: all finite ones; 0: no tree */
+  uint32_t bounds_more[3];
+  uint32_t round_count; /* PLOC rounds it took */
+  uint32_t error_word;  /* the flag word: bits below; 0: well. With any of them there is no tree */
+  uint32_t
+      primitive_count; /* that the build was asked for, larger than its maximum with COPPICE_ERROR_COUNT */
+  uint32_t reserved[2];
+} CoppiceTreeState;
+
+#define COPPICE_ERROR_SORT_LOOKBACK 1u /* a tile of a sort waited in vain for those before it */
+#define COPPICE_ERROR_PLOC_LOOKBACK 2u /* the same in a build */
+#define COPPICE_ERROR_PLOC_ROUNDS 4u   /* rounds did not end within their bound */
+#define COPPICE_ERROR_TREE_TOO_DEEP 8u
+#define COPPICE_ERROR_TRACE_STEPS 16u /* a ray needs more steps than this driver's loops may take */
+#define COPPICE_ERROR_SCAN_LOOKBACK 32u
+#define COPPICE_ERROR_WIDE_TOO_DEEP 64u
+#define COPPICE_ERROR_COUNT 128u /* a count on the device is larger than its maximum */
+
+#endif
