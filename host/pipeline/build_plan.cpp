@@ -59,8 +59,10 @@ void add_sort_slots(Layout& layout, BuildPlan& plan, bool has_values = true) {
   const std::uint32_t key_words = plan.options.morton_bits / 30;
   const SortPlan& sort = plan.sort = plan_passes(n, plan.options);
   for (int i = 0; i < 2; ++i) {
-    plan.keys[i] = layout.add<uint>(i ? "keys_b" : "keys_a", std::uint64_t{n} * key_words);
-    plan.values[i] = layout.add<uint>(i ? "values_b" : "values_a", has_values ? n : 0);
+    plan.keys[i] = layout.add<uint>(i ? "keys_b" : "keys_a", std::uint64_t{n} * key_words,
+                                    i ? Memory::scratch : Memory::keys);
+    plan.values[i] = layout.add<uint>(i ? "values_b" : "values_a", has_values ? n : 0,
+                                      i ? Memory::scratch : Memory::values);
   }
   plan.unsorted_keys = plan.keys[sort.passes % 2];
   plan.unsorted_values = plan.values[sort.passes % 2];
@@ -95,9 +97,9 @@ std::uint32_t ploc_rounds_bound(std::uint32_t clusters, std::uint32_t target) {
 TreeSlots plan_tree(Layout& layout, std::uint32_t triangle_count, std::uint64_t node_count) {
   TreeSlots tree;
   tree.triangle_count = triangle_count;
-  tree.triangles = layout.add<Triangle>("triangles", triangle_count);
-  tree.nodes = layout.add<Node>("nodes", node_count);
-  tree.state = layout.add<BuildState>("state", 1);
+  tree.triangles = layout.add<Triangle>("triangles", triangle_count, Memory::tree);
+  tree.nodes = layout.add<Node>("nodes", node_count, Memory::tree);
+  tree.state = layout.add<BuildState>("state", 1, Memory::tree);
   return tree;
 }
 

@@ -24,8 +24,8 @@ ScanPlan plan_scan(Layout& layout, std::uint64_t word_count, const BuildOptions&
   const std::uint64_t quads = divide_up(word_count, 4);
   ScanPlan plan;
   plan.options = options;
-  plan.source = layout.add<uvec4>("scan_source", quads);
-  plan.target = layout.add<uvec4>("scan_target", quads);
+  plan.source = layout.add<uvec4>("scan_source", quads, Memory::source);
+  plan.target = layout.add<uvec4>("scan_target", quads, Memory::target);
   plan.status = layout.add<uint>("scan_status",
                                  first_tile_word + divide_up(divide_up(quads, SCAN_TILE) * SCAN_SUMS, 4) * 4);
   plan.state = layout.add<BuildState>("state", 1);

@@ -59,8 +59,8 @@ WidePlan plan_wide(Layout& layout, TreeSlots& tree, const BuildPlan* finished) {
   plan.block_sums =
       layout.add<uint>("wide_block_sums", divide_up(bound, WIDE_TILE * WIDE_BLOCK) + plan.levels_bound);
   add_scratch(layout, plan, bound, finished);
-  tree.wide_nodes = layout.add<WideNode>("wide_nodes", bound);
-  tree.wide_counts = layout.add<WideCounts>("wide_counts", 1);
+  tree.wide_nodes = layout.add<WideNode>("wide_nodes", bound, Memory::tree);
+  tree.wide_counts = layout.add<WideCounts>("wide_counts", 1, Memory::tree);
   return plan;
 }
 

@@ -7,6 +7,10 @@
 
 namespace coppice {
 
+// Who keeps a slot. It matters only where these lie apart: each is a block of its own then.
+enum class Memory : std::uint32_t { scratch, tree, keys, values, source, target };
+inline constexpr std::uint32_t memory_kinds = 6;
+
 // A position in device or host memory, before it has an address.
 struct Place {
   std::uint32_t block = 0;
@@ -53,19 +57,28 @@ class Layout {
   explicit Layout(std::uint64_t max_block_bytes = std::uint64_t{1} << 30)
       : max_block_bytes_(max_block_bytes) {}
 
+  // With a block for each kind of memory, in their order, whoever gives it.
+  static Layout apart(std::uint64_t max_block_bytes) {
+    Layout layout(max_block_bytes);
+    layout.apart_ = true;
+    layout.block_bytes_.resize(memory_kinds);
+    return layout;
+  }
+
   // Throws LayoutError if the slot alone is larger than a block may be.
   template <class T>
-  Slot<T> add(const std::string& name, std::uint64_t count) {
-    return {reserve({name, {}, count, sizeof(T)}), count};
+  Slot<T> add(const std::string& name, std::uint64_t count, Memory memory = Memory::scratch) {
+    return {reserve({name, {}, count, sizeof(T)}, memory), count};
   }
 
   const std::vector<std::uint64_t>& block_bytes() const { return block_bytes_; }
   const std::vector<SlotListing>& slots() const { return slots_; }
 
  private:
-  Place reserve(SlotListing slot);
+  Place reserve(SlotListing slot, Memory memory);
 
   std::uint64_t max_block_bytes_;
+  bool apart_ = false;
   std::vector<std::uint64_t> block_bytes_;
   std::vector<SlotListing> slots_;
 };
