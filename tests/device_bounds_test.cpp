@@ -73,8 +73,8 @@ TEST_F(DeviceBounds, RaysTracedInPiecesHitWhatTheTwinsHit) {
   for (const Triangle& t : random_triangles(20011, 4, 2.0f)) rays.push_back({t.a, 0, t.b - t.a, 1e9f});
   RayTracing tracing(test_device(), build_ploc(triangles, {}).nodes, triangles, 20011);
   TraceOptions options = test_trace_options(1, 1);
-  for (const bool brute_force : {false, true}) {
-    options.brute_force = brute_force;
+  for (const Walk walk : {Walk::binary, Walk::brute_force}) {
+    options.walk = walk;
     const TracedRays device = tracing.on_device(rays, options), twins = tracing.by_twins(rays, options);
     EXPECT_EQ(device.hit_count, twins.hit_count);
     EXPECT_GT(device.hit_count, 1000u);

@@ -78,13 +78,11 @@ TEST_F(LikeAGpu, SameHitsThroughEveryTree) {
   TraceOptions options = test_trace_options(1, 1);
   const TracedRays expected = here.on_device(rays, options);
   EXPECT_GT(expected.hit_count, 1000u);
-  for (const auto& [wide, packets] : {std::pair{false, false}, {true, true}, {true, false}}) {
-    options.wide = wide;
-    options.packets = packets;
+  for (const Walk walk : {Walk::binary, Walk::wide_packets, Walk::wide_single}) {
+    options.walk = walk;
     const TracedRays traced = there.on_device(rays, options);
     EXPECT_EQ(traced.error_word, 0u);
-    EXPECT_EQ(compare_hits(traced.hits, expected.hits).count, 0u)
-        << "wide " << wide << ", packets " << packets;
+    EXPECT_EQ(compare_hits(traced.hits, expected.hits).count, 0u) << "walk " << static_cast<int>(walk);
   }
 }
 

@@ -112,12 +112,12 @@ TEST_F(Lockstep, TiesAtRadiiThatEndWithinBlocks) {
 TEST_F(Lockstep, WholeFrame) {
   const Scene scene = find_hard_case("nested")->make(3000, 1);
   const SceneArrays arrays = scene_arrays(scene);
-  for (const bool brute_force : {false, true}) {
+  for (const Walk walk : {Walk::binary, Walk::brute_force}) {
     Layout layout(test_device().properties().max_block_bytes);
     const BuildPlan build = plan_build(layout, static_cast<std::uint32_t>(arrays.triangles.size()), {});
     TraceOptions options = test_trace_options(61, 47);
     options.samples = 3;
-    options.brute_force = brute_force;
+    options.walk = walk;
     const TracePlan trace =
         plan_trace(layout, build, static_cast<std::uint32_t>(arrays.materials.size()), options);
     LockstepExecutor executor(test_device(), layout);

@@ -22,19 +22,18 @@ namespace {
 constexpr std::uint32_t width = 61, height = 47;
 
 // A few chains that have all stages between them.
-enum class Tracer { binary, packets, single, brute_force };
 struct Frame {
   std::uint32_t triangles;
   DeviceBuilder builder;
   bool lookback;
-  Tracer tracer;
+  Walk walk;
 };
-constexpr Frame frames[] = {{1000, DeviceBuilder::ploc, true, Tracer::binary},
-                            {1000, DeviceBuilder::hploc, true, Tracer::packets},
-                            {1000, DeviceBuilder::hploc, true, Tracer::single},
-                            {300, DeviceBuilder::ploc, true, Tracer::brute_force},
-                            {SORT_SCAN_TILE + 100, DeviceBuilder::ploc, false,
-                             Tracer::binary}};  // one tile alone sorts without a scan
+constexpr Frame frames[] = {
+    {1000, DeviceBuilder::ploc, true, Walk::binary},
+    {1000, DeviceBuilder::hploc, true, Walk::wide_packets},
+    {1000, DeviceBuilder::hploc, true, Walk::wide_single},
+    {300, DeviceBuilder::ploc, true, Walk::brute_force},
+    {SORT_SCAN_TILE + 100, DeviceBuilder::ploc, false, Walk::binary}};  // one tile alone sorts without a scan
 constexpr std::size_t scan_and_copy = std::size(frames), chain_count = scan_and_copy + 1;
 
 using Spoil = std::function<void(std::vector<Step>&, const LockstepExecutor&)>;
@@ -56,11 +55,9 @@ Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
   options.lookback = frame.lookback;
   BuildPlan build = plan_build(layout, static_cast<std::uint32_t>(arrays.triangles.size()), options);
   TraceOptions trace_options = test_trace_options(width, height);
-  trace_options.brute_force = frame.tracer == Tracer::brute_force;
-  trace_options.wide = frame.tracer == Tracer::packets || frame.tracer == Tracer::single;
-  trace_options.packets = frame.tracer == Tracer::packets;
+  trace_options.walk = frame.walk;
   std::optional<WidePlan> wide;
-  if (trace_options.wide) wide = plan_wide(layout, build, &build);
+  if (is_wide(frame.walk)) wide = plan_wide(layout, build, &build);
   const TracePlan trace =
       plan_trace(layout, build, static_cast<std::uint32_t>(arrays.materials.size()), trace_options);
   const RaySlots bounced{layout.add<Ray>("bounced_rays", trace.band_rays),

@@ -46,12 +46,11 @@ DeviceUse builds_by(DeviceBuilder builder, const Variants& variants = {}) {
   return use;
 }
 
-DeviceUse traces_by(bool wide, bool packets = false) {
+DeviceUse traces_by(Walk walk) {
   DeviceUse use;
   use.builds = false;
   use.traces = {test_trace_options(1, 1)};
-  use.traces[0].wide = wide;
-  use.traces[0].packets = packets;
+  use.traces[0].walk = walk;
   return use;
 }
 
@@ -77,14 +76,13 @@ TEST_F(SelfCheck, PassesOnTheTestDevice) {
   for (const DeviceBuilder builder : {DeviceBuilder::hploc, DeviceBuilder::lbvh}) {
     DeviceUse use = builds_by(builder);
     use.traces = {test_trace_options(1, 1)};
-    use.traces[0].wide = true;
+    use.traces[0].walk = Walk::wide_packets;
     EXPECT_TRUE(check_device(test_device(), use));
   }
-  for (const DeviceUse& use : {traces_by(false), traces_by(true, true), traces_by(true)})
+  for (const DeviceUse& use :
+       {traces_by(Walk::binary), traces_by(Walk::wide_packets), traces_by(Walk::wide_single)})
     EXPECT_TRUE(check_device(test_device(), use));
-  DeviceUse brute_force = traces_by(false);
-  brute_force.traces[0].brute_force = true;
-  EXPECT_TRUE(check_device(test_device(), brute_force));
+  EXPECT_TRUE(check_device(test_device(), traces_by(Walk::brute_force)));
 }
 
 TEST_F(SelfCheck, DoesWithoutLookbackWhereItGivesAnotherTree) {
@@ -129,7 +127,8 @@ TEST_F(SelfCheck, RefusesADeviceByTheTracerThatIsGoingToRun) {
     }
   };
   const Fault half = [](std::vector<Step>& steps) { steps.back().groups.x /= 2; };
-  for (const DeviceUse& use : {traces_by(false), traces_by(true, true), traces_by(true)}) {
+  for (const DeviceUse& use :
+       {traces_by(Walk::binary), traces_by(Walk::wide_packets), traces_by(Walk::wide_single)}) {
     EXPECT_TRUE(says(refusal(use, one_turn), "finds wrong hits"));
     EXPECT_TRUE(says(refusal(use, half), "finds wrong hits"));
   }
@@ -138,9 +137,9 @@ TEST_F(SelfCheck, RefusesADeviceByTheTracerThatIsGoingToRun) {
 // Where hits need be only nearly the same.
 TEST_F(SelfCheck, RefusesAGpuByItsTracer) {
   Device device({"", false, true});
-  EXPECT_EQ(refusal(traces_by(true, true), {}, device), "");
+  EXPECT_EQ(refusal(traces_by(Walk::wide_packets), {}, device), "");
   const Fault half = [](std::vector<Step>& steps) { steps.back().groups.x /= 2; };
-  EXPECT_TRUE(says(refusal(traces_by(true, true), half, device), "finds wrong hits"));
+  EXPECT_TRUE(says(refusal(traces_by(Walk::wide_packets), half, device), "finds wrong hits"));
 }
 
 }  // namespace

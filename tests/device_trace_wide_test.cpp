@@ -20,13 +20,11 @@
 namespace coppice {
 namespace {
 
-// The parameter: in packets.
-class TraceWide : public DeviceTest, public testing::WithParamInterface<bool> {
+class TraceWide : public DeviceTest, public testing::WithParamInterface<Walk> {
  protected:
-  static TraceOptions options_for(bool wide) {
+  static TraceOptions options_for(Walk walk) {
     TraceOptions options = test_trace_options(1, 1);
-    options.wide = wide;
-    options.packets = GetParam();
+    options.walk = walk;
     options.max_turns = std::min(options.max_turns, 1u << 20);  // a walk that does not end fails
     return options;
   }
@@ -36,12 +34,13 @@ class TraceWide : public DeviceTest, public testing::WithParamInterface<bool> {
                                         const std::string& what) {
     const Bvh bvh = build_ploc(triangles, {});
     RayTracing tracing(test_device(), bvh.nodes, triangles, static_cast<std::uint32_t>(rays.size()), true);
-    const TracedRays binary = tracing.on_device(rays, options_for(false));
-    const TracedRays wide = tracing.on_device(rays, options_for(true));
+    const TracedRays binary = tracing.on_device(rays, options_for(Walk::binary));
+    const TracedRays wide = tracing.on_device(rays, options_for(GetParam()));
     EXPECT_EQ(binary.error_word, 0u) << what;
     EXPECT_EQ(wide.error_word, 0u) << what << ": " << describe_error_word(wide.error_word);
     EXPECT_EQ(compare_hits(binary.hits, wide.hits).count, 0u) << what;
-    EXPECT_EQ(compare_hits(tracing.by_twins(rays, options_for(true)).hits, wide.hits).count, 0u) << what;
+    EXPECT_EQ(compare_hits(tracing.by_twins(rays, options_for(GetParam())).hits, wide.hits).count, 0u)
+        << what;
     EXPECT_EQ(binary.hit_count, wide.hit_count) << what;
     return wide.hit_count;
   }
@@ -137,8 +136,7 @@ TEST_P(TraceWide, APictureInLockstep) {
   for (const uvec2 size : {uvec2(1, 1), uvec2(19, 13), uvec2(64, 48), uvec2(200, 7)}) {
     const std::vector<Triangle> triangles = random_triangles(3000, 5, 0.1f);
     TraceOptions options = test_trace_options(size.x, size.y);
-    options.wide = true;
-    options.packets = GetParam();
+    options.walk = GetParam();
     options.samples = 2;
     Layout layout(test_device().properties().max_block_bytes);
     BuildPlan build = plan_build(layout, static_cast<std::uint32_t>(triangles.size()), {});
@@ -173,7 +171,7 @@ TEST_P(TraceWide, TooFewTurnsAreReportedByName) {
   const std::vector<Ray> rays = hard_rays(RayKind::VERTICES, triangles, {}, 100, 4);
   const Bvh bvh = build_ploc(triangles, {});
   RayTracing tracing(test_device(), bvh.nodes, triangles, 100, true);
-  TraceOptions options = options_for(true);
+  TraceOptions options = options_for(GetParam());
   options.max_turns = 3;
   const TracedRays traced = tracing.on_device(rays, options);
   EXPECT_NE(describe_error_word(traced.error_word).find("trace_wide"), std::string::npos);
@@ -183,7 +181,7 @@ TEST_P(TraceWide, IsRefusedWithTestsThatDependOnTheOrder) {
   Layout layout;
   TreeSlots tree = plan_tree(layout, 1, 1);
   plan_wide(layout, tree);
-  TraceOptions options = options_for(true);
+  TraceOptions options = options_for(GetParam());
   options.triangle_test = TRIANGLE_FAST;
   const TracePlan trace = plan_trace(layout, tree, 1, options);
   GpuExecutor executor(test_device(), layout);
@@ -191,9 +189,11 @@ TEST_P(TraceWide, IsRefusedWithTestsThatDependOnTheOrder) {
   EXPECT_THROW(append_trace(chain, tree, trace), std::invalid_argument);
 }
 
-INSTANTIATE_TEST_SUITE_P(Rays, TraceWide, testing::Bool(), [](const auto& info) {
-  return std::string(info.param ? "InPackets" : "ByThemselves");
-});
+INSTANTIATE_TEST_SUITE_P(Rays, TraceWide, testing::Values(Walk::wide_single, Walk::wide_packets),
+                         [](const auto& info) {
+                           return std::string(info.param == Walk::wide_packets ? "InPackets"
+                                                                               : "ByThemselves");
+                         });
 
 }  // namespace
 }  // namespace coppice

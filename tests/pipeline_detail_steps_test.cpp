@@ -30,13 +30,13 @@ std::vector<Ray> rays_at_detail() {
   return rays;
 }
 
-struct Walk {
-  bool wide, packets;
+struct Way {
+  Walk walk;
   std::uint32_t box_test;
 };
 
-constexpr Walk FAST = {false, false, BOX_FAST}, BINARY = {false, false, BOX_ROBUST},
-               PACKETS = {true, true, BOX_ROBUST}, SINGLE = {true, false, BOX_ROBUST};
+constexpr Way FAST = {Walk::binary, BOX_FAST}, BINARY = {Walk::binary, BOX_ROBUST},
+              PACKETS = {Walk::wide_packets, BOX_ROBUST}, SINGLE = {Walk::wide_single, BOX_ROBUST};
 
 // By the twins, which count as the kernels do.
 class Detail {
@@ -57,13 +57,12 @@ class Detail {
     executor_->run(chain.steps());
   }
 
-  double steps_per_ray(const Walk& walk) {
+  double steps_per_ray(const Way& way) {
     std::vector<Hit> misses(rays.size(), {std::numeric_limits<float>::infinity(), NO_TRIANGLE, 0, 0});
     executor_->upload(rays_.hits, std::span<const Hit>(misses));
     TraceOptions options;
-    options.wide = walk.wide;
-    options.packets = walk.packets;
-    options.box_test = walk.box_test;
+    options.walk = way.walk;
+    options.box_test = way.box_test;
     Chain chain = executor_->chain();
     chain.clear(rays_.counters);
     append_closest_hits(chain, tree_.tree, rays_, static_cast<std::uint32_t>(rays.size()), options);

@@ -40,7 +40,7 @@ class CutTrace {
     Layout layout;
     TreeSlots tree = plan_tree(layout, triangle_count(), bvh.nodes.size());
     std::optional<WidePlan> wide;
-    if (options_.wide) wide = plan_wide(layout, tree);
+    if (is_wide(options_.walk)) wide = plan_wide(layout, tree);
     const TracePlan plan =
         plan_trace(layout, tree, static_cast<std::uint32_t>(arrays_.materials.size()), options_);
     CpuExecutor executor(layout);
@@ -82,7 +82,8 @@ class CutTrace {
  private:
   // Of one step of the least range; a range that is open keeps its rays.
   std::uint64_t least_work() const {
-    return options_.brute_force ? most_open_rays * std::min(BRUTE_FORCE_SLICE, triangle_count()) : RANGE_RAYS;
+    return options_.walk == Walk::brute_force ? most_open_rays * std::min(BRUTE_FORCE_SLICE, triangle_count())
+                                              : RANGE_RAYS;
   }
 
   static constexpr std::uint64_t most_open_rays = 8192;
@@ -116,20 +117,19 @@ TEST(TracePieces, OfTheBinaryTree) { expect_same_however_cut({3000, options_of(8
 
 TEST(TracePieces, OfTheWideTreeInPackets) {
   TraceOptions options = options_of(83, 61, 3);
-  options.wide = true;
+  options.walk = Walk::wide_packets;
   expect_same_however_cut({3000, options}, 5000);
 }
 
 TEST(TracePieces, OfTheWideTreeRayByRay) {
   TraceOptions options = options_of(83, 61, 3);
-  options.wide = true;
-  options.packets = false;
+  options.walk = Walk::wide_single;
   expect_same_however_cut({3000, options}, 5000);
 }
 
 TEST(TracePieces, OfBruteForceWithinTheSlicesOfItsTriangles) {
   TraceOptions options = options_of(17, 16, 2);
-  options.brute_force = true;
+  options.walk = Walk::brute_force;
   const CutTrace trace(BRUTE_FORCE_SLICE + 1000, options);
   ASSERT_GT(trace.triangle_count(), BRUTE_FORCE_SLICE);
   expect_same_however_cut(trace, std::uint64_t{200} * trace.triangle_count());

@@ -21,12 +21,12 @@ TEST(Variants, RulesGoByPropertiesOfTheDevice) {
   EXPECT_EQ(default_variants(device_named("a")).sort, SORT_SCAN);
   EXPECT_EQ(default_variants(device_named("a", DeviceType::discrete, 32)).sort, SORT_ONESWEEP_MATCH);
   EXPECT_EQ(default_variants(device_named("a", DeviceType::integrated, 8)).sort, SORT_ONESWEEP_RUNS);
-  EXPECT_EQ(default_variants(device_named("a")).trace, TRACE_WIDE_PACKETS);
-  EXPECT_EQ(default_variants(device_named("a", DeviceType::discrete, 32)).trace, TRACE_WIDE_SINGLE);
-  EXPECT_EQ(default_variants(device_named("a", DeviceType::integrated, 8)).trace, TRACE_BINARY);
+  EXPECT_EQ(default_variants(device_named("a")).walk(), Walk::wide_packets);
+  EXPECT_EQ(default_variants(device_named("a", DeviceType::discrete, 32)).walk(), Walk::wide_single);
+  EXPECT_EQ(default_variants(device_named("a", DeviceType::integrated, 8)).walk(), Walk::binary);
   DeviceProperties ends_loops = device_named("a");
   ends_loops.loop_turn_limit = 65535;
-  EXPECT_EQ(default_variants(ends_loops).trace, TRACE_BINARY);
+  EXPECT_EQ(default_variants(ends_loops).walk(), Walk::binary);
 }
 
 TEST(Variants, EveryValueOfEveryStageHasANameThatSetsIt) {

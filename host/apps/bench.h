@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "apps/checked_device.h"
+#include "apps/open_device.h"
 #include "apps/report.h"
 #include "apps/steady_state.h"
 
@@ -52,9 +52,9 @@ void bench_trace(CheckedDevice& device, const Options& options, const AddRow& ad
 BenchRow bench_keys(CheckedDevice& device, const Options& options, std::uint32_t count,
                     std::uint32_t key_words, bool has_values, const std::string& preset);
 
-// One row of bench_trace, without the whole picture; `tree` as --tree names it. Throws InputError for a scene
+// One row of bench_trace, without the whole picture; Throws InputError for a scene
 // that does not open.
-BenchRow bench_primary_rays(CheckedDevice& device, const Options& options, const std::string& tree);
+BenchRow bench_primary_rays(CheckedDevice& device, const Options& options, Walk walk);
 
 struct NamedBench {
   const char* name;

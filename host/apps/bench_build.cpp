@@ -21,9 +21,9 @@ class CheckedBuild {
  public:
   CheckedBuild(CheckedDevice& device, Options options, const NamedDeviceBuilder& builder, std::uint32_t count)
       : arrays_(scene_arrays(open_scene(scatter_of(count)))),
-        layout_(device.device.properties().max_block_bytes),
+        layout_(device.properties().max_block_bytes),
         plan_(plan(device, options, builder)),
-        executor_(device.device, layout_) {
+        executor_(device.device(), layout_) {
     executor_.upload(plan_.triangles, std::span<const Triangle>(arrays_.triangles));
     Chain chain = executor_.chain();
     append_build(chain, plan_);
@@ -54,8 +54,9 @@ class CheckedBuild {
  private:
   BuildPlan plan(CheckedDevice& device, Options& options, const NamedDeviceBuilder& builder) {
     options.builder = builder.name;
-    return plan_build(layout_, static_cast<std::uint32_t>(arrays_.triangles.size()),
-                      device.build_options(options, morton_bits_for(options, arrays_.triangles)));
+    return plan_build(
+        layout_, static_cast<std::uint32_t>(arrays_.triangles.size()),
+        device.build_options(build_options_of(options, morton_bits_for(options, arrays_.triangles))));
   }
 
   SceneArrays arrays_;
@@ -74,7 +75,7 @@ BenchRow bench_builder(CheckedDevice& device, const Options& options, const Name
                            measure_steady(steady_options(options, run()), run));
   const KernelSplit split = split_time(build.executor(), build.steps(), measured_limit_seconds);
   const KernelSums sums(split, build.counts());
-  row.kernels = kernel_table(sums, find_copy_limit(device.device, sums.largest_dispatch()), row.ms.median);
+  row.kernels = kernel_table(sums, find_copy_limit(device.device(), sums.largest_dispatch()), row.ms.median);
   const double scratch = static_cast<double>(build.scratch_bytes()) / count;
   row.figures = {{"scratch_bytes_per_triangle", scratch},
                  {"device_bytes_per_triangle", static_cast<double>(build.device_bytes()) / count}};
@@ -94,8 +95,8 @@ std::vector<Step> with_mark(std::vector<Step> steps) {
 }
 
 BenchRow bench_rounds(CheckedDevice& device, const Options& options, std::uint32_t count) {
-  if (device.device.properties().timestamp_period_ns == 0)
-    throw DeviceError("bench ploc: " + device.device.properties().name +
+  if (device.properties().timestamp_period_ns == 0)
+    throw DeviceError("bench ploc: " + device.properties().name +
                       " has no timestamps, which tell the rounds from the rest of a build");
   CheckedBuild build(device, options, *find_device_builder("gpu-ploc"), count);
   const std::vector<Step> needed = split_time(build.executor(), build.steps(), measured_limit_seconds).steps;
@@ -139,7 +140,8 @@ BenchRow bench_rounds(CheckedDevice& device, const Options& options, std::uint32
 }  // namespace
 
 void bench_build(CheckedDevice& device, const Options& options, const AddRow& add) {
-  check_room(scatter_of(options.most), options, &device.device);  // before the smaller sizes take their time
+  check_room(scatter_of(options.most), options,
+             &device.device());  // before the smaller sizes take their time
   for (const NamedDeviceBuilder& builder : device_builders()) {
     const std::string name(builder.name);
     const bool chosen = options.builders.empty() || std::ranges::count(options.builders, name);
@@ -151,7 +153,7 @@ void bench_build(CheckedDevice& device, const Options& options, const AddRow& ad
 
 void bench_ploc(CheckedDevice& device, const Options& options, const AddRow& add) {
   if (!is_wanted(options, "ploc", "scatter")) return;
-  check_room(scatter_of(options.most), options, &device.device);
+  check_room(scatter_of(options.most), options, &device.device());
   for (const std::uint32_t count : bench_sizes(5000, options.most)) add(bench_rounds(device, options, count));
 }
 

@@ -22,9 +22,9 @@ BenchRow bench_words(CheckedDevice& device, const Options& options, std::uint32_
   Random random(1);
   std::vector<uint> words(count), expected(count);
   for (uint& word : words) word = random.next();
-  Layout layout(device.device.properties().max_block_bytes);
-  const ScanPlan plan = plan_scan(layout, count, device.build_options(options, 30));
-  GpuExecutor executor(device.device, layout);
+  Layout layout(device.properties().max_block_bytes);
+  const ScanPlan plan = plan_scan(layout, count, device.build_options(build_options_of(options, 30)));
+  GpuExecutor executor(device.device(), layout);
   executor.upload(ScanPlan::words_of(plan.source), std::span<const uint>(words));
   Chain chain = executor.chain();
   append_scan(chain, plan);

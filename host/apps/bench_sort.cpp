@@ -68,11 +68,12 @@ std::string sort_name(std::uint32_t key_words, bool has_values) {
 
 BenchRow bench_keys(CheckedDevice& device, const Options& options, std::uint32_t count,
                     std::uint32_t key_words, bool has_values, const std::string& preset) {
-  Layout layout(device.device.properties().max_block_bytes);
-  const BuildPlan plan = plan_sort(layout, count, device.build_options(options, 30 * key_words), has_values);
+  Layout layout(device.properties().max_block_bytes);
+  const BuildPlan plan =
+      plan_sort(layout, count, device.build_options(build_options_of(options, 30 * key_words)), has_values);
   const auto given_keys = layout.add<uint>("given_keys", plan.keys[0].count);
   const auto given_values = layout.add<uint>("given_values", plan.values[0].count);
-  GpuExecutor executor(device.device, layout);
+  GpuExecutor executor(device.device(), layout);
   const std::vector<uint> keys = keys_of(preset, count, key_words);
   std::vector<uint> values(given_values.count);
   std::iota(values.begin(), values.end(), 0u);

@@ -30,10 +30,17 @@ void check_hits(RayTracing& tracing, std::span<const Ray> rays, const TraceOptio
                       " hits are not the twin's");
 }
 
+TraceOptions trace_options(const CheckedDevice& device, const Options& options, Walk walk) {
+  TraceOptions trace = device.trace_options(trace_options_of(options));
+  trace.walk = walk;
+  return trace;
+}
+
 // The whole chain of a picture of the same rays: camera rays, closest hits, shading, sRGB.
-void add_frame(CheckedDevice& device, Options options, const Scene& scene, BenchRow& row) {
+void add_frame(CheckedDevice& device, Options options, const Scene& scene, Walk walk, BenchRow& row) {
   options.frames = options.runs;
-  const RenderReport frame = render_on_device(device, scene, options, false);
+  const RenderReport frame =
+      render_on_device(device, scene, options, trace_options(device, options, walk), false);
   if (frame.rays != row.size) throw DeviceError("the picture has other rays than the measurement");
   const double mrays_per_s = static_cast<double>(frame.rays) / frame.trace_ms / 1000;
   row.figures = {{"frame_ms", frame.trace_ms}, {"frame_millions_per_s", mrays_per_s}};
@@ -50,42 +57,38 @@ class TraceBench {
         options_(options),
         scene_(scene),
         arrays_(scene_arrays(scene)),
-        has_wide_(can_trace_wide(device.trace_options(options))),
+        has_wide_(can_trace_wide(device.trace_options(trace_options_of(options)))),
         primary_(rays_through(make_film(scene, options.camera, options.width, options.height, 1))),
-        tracing_(device.device, built(options, arrays_.triangles).nodes, arrays_.triangles,
+        tracing_(device.device(), built(options, arrays_.triangles).nodes, arrays_.triangles,
                  static_cast<std::uint32_t>(primary_.size()), has_wide_) {}
 
-  // As --tree names them.
-  std::vector<std::string> trees() const {
-    return has_wide_ ? std::vector<std::string>{"binary", "wide-packets", "wide-single"}
-                     : std::vector<std::string>{"binary"};
+  std::vector<Walk> walks() const {
+    return has_wide_ ? std::vector{Walk::binary, Walk::wide_packets, Walk::wide_single}
+                     : std::vector{Walk::binary};
   }
 
   const std::vector<Ray>& primary() const { return primary_; }
 
   // One from each hit of the primary rays.
   std::vector<Ray> diffuse() {
-    std::vector<Ray> rays = tracing_.bounce(primary_, device_.trace_options(options_), 1);
+    std::vector<Ray> rays = tracing_.bounce(primary_, device_.trace_options(trace_options_of(options_)), 1);
     std::erase_if(rays, [](const Ray& ray) { return ray.direction == vec3(0); });  // of rays that hit nothing
     return rays;
   }
 
-  std::string input(const std::string& tree) const {
-    return scene_.name + " " + options_.builder + " " + tree;
+  std::string input(Walk walk) const {
+    return scene_.name + " " + options_.builder + " " + std::string(name_of(walk));
   }
 
-  BenchRow measure(const std::string& name, std::span<const Ray> rays, const std::string& tree) {
-    Options with_tree = options_;
-    with_tree.tree = tree;
-    TraceOptions trace = device_.trace_options(with_tree);
-    trace.wide = tree != "binary";
-    check_hits(tracing_, rays, trace, device_.device.properties().type == DeviceType::cpu);
+  BenchRow measure(const std::string& name, std::span<const Ray> rays, Walk walk) {
+    const TraceOptions trace = trace_options(device_, options_, walk);
+    check_hits(tracing_, rays, trace, device_.properties().type == DeviceType::cpu);
     const auto run = [&] {
       const TracedRays traced = tracing_.on_device(rays, trace);
       if (traced.error_word) throw DeviceError(describe_error_word(traced.error_word));
       return traced.ms;
     };
-    return bench_row(name, input(tree), rays.size(), measure_steady(steady_options(options_, run()), run));
+    return bench_row(name, input(walk), rays.size(), measure_steady(steady_options(options_, run()), run));
   }
 
  private:
@@ -106,16 +109,14 @@ class TraceBench {
 void bench_trees(CheckedDevice& device, const Options& options, const Scene& scene, const AddRow& add) {
   TraceBench bench(device, options, scene);
   const std::vector<Ray> diffuse = bench.diffuse();
-  for (const std::string& tree : bench.trees()) {
-    if (is_wanted(options, "trace_primary", bench.input(tree))) {
-      BenchRow row = bench.measure("trace_primary", bench.primary(), tree);
-      Options frame = options;
-      frame.tree = tree;
-      add_frame(device, frame, scene, row);
+  for (const Walk walk : bench.walks()) {
+    if (is_wanted(options, "trace_primary", bench.input(walk))) {
+      BenchRow row = bench.measure("trace_primary", bench.primary(), walk);
+      add_frame(device, options, scene, walk, row);
       add(row);
     }
-    if (!diffuse.empty() && is_wanted(options, "trace_diffuse", bench.input(tree)))
-      add(bench.measure("trace_diffuse", diffuse, tree));
+    if (!diffuse.empty() && is_wanted(options, "trace_diffuse", bench.input(walk)))
+      add(bench.measure("trace_diffuse", diffuse, walk));
   }
 }
 
@@ -126,7 +127,7 @@ void bench_trace(CheckedDevice& device, const Options& options, const AddRow& ad
   for (const std::string& name :
        options.scenes.empty() ? std::vector<std::string>{"grove", "hard:detail-on-ground"} : options.scenes) {
     one.scene = name;
-    check_room(name, one, &device.device);
+    check_room(name, one, &device.device());
     const Scene scene = open_scene(name, options.up);
     for (const std::string& builder :
          options.builders.empty() ? std::vector{options.builder} : options.builders) {
@@ -136,10 +137,10 @@ void bench_trace(CheckedDevice& device, const Options& options, const AddRow& ad
   }
 }
 
-BenchRow bench_primary_rays(CheckedDevice& device, const Options& options, const std::string& tree) {
+BenchRow bench_primary_rays(CheckedDevice& device, const Options& options, Walk walk) {
   const Scene scene = open_scene(options.scene, options.up);
   TraceBench bench(device, options, scene);
-  return bench.measure("trace_primary", bench.primary(), tree);
+  return bench.measure("trace_primary", bench.primary(), walk);
 }
 
 }  // namespace coppice

@@ -32,8 +32,8 @@ std::span<const NamedBench> benches() {
 
 int run_bench(const Options& options) {
   CheckedDevice device = open_device(options, {});
-  const DeviceProperties& properties = device.device.properties();
-  note_timestamps(device.device);
+  const DeviceProperties& properties = device.properties();
+  note_timestamps(device.device());
   std::vector<BenchRow> rows;
   if (talks(options)) {
     std::printf("%s, %s\n  %-15s %-16s %10s %10s %10s %10s %10s\n", properties.name.c_str(),
@@ -48,7 +48,7 @@ int run_bench(const Options& options) {
   for (const BenchRow& row : rows) json.push_back(to_json(row));
   if (!options.csv.empty()) write_file(options.csv, bench_csv(rows, properties) + "\n");
   write_json(options.json, {{"device", properties.name}, {"driver", properties.driver}, {"rows", json}});
-  return validation_status(device.device);
+  return validation_status(device.device());
 }
 
 }  // namespace coppice

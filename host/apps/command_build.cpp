@@ -11,16 +11,16 @@ namespace {
 BuildReport build_on_device(const Options& options, const SceneArrays& arrays, BuildReport report,
                             int& status) {
   CheckedDevice device = open_device(options, {});
-  Layout layout(device.device.properties().max_block_bytes);
+  Layout layout(device.properties().max_block_bytes);
   BuildPlan plan = plan_build(layout, static_cast<std::uint32_t>(arrays.triangles.size()),
-                              device.build_options(options, report.morton_bits));
+                              device.build_options(build_options_of(options, report.morton_bits)));
   std::optional<WidePlan> wide;
   if (options.wide) wide = plan_wide(layout, plan, &plan);
-  GpuExecutor executor(device.device, layout);
+  GpuExecutor executor(device.device(), layout);
   executor.upload(plan.triangles, std::span<const Triangle>(arrays.triangles));
   for (const std::uint64_t bytes : layout.block_bytes()) report.device_bytes += bytes;
   report = measure_gpu_build(device, executor, plan, report, options, wide ? &*wide : nullptr);
-  status = validation_status(device.device);
+  status = validation_status(device.device());
   return report;
 }
 

@@ -1,9 +1,9 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "apps/checked_device.h"
 #include "apps/frame.h"
 #include "apps/measure_build.h"
+#include "apps/open_device.h"
 #include "apps/report.h"
 #include "apps/scene_room.h"
 #include "pipeline/wide.h"
@@ -63,16 +63,16 @@ int run_lockstep(const Options& options) {
   const SceneArrays arrays = scene_arrays(scene);
   CheckedDevice device =
       open_device(options, {true, true, static_cast<std::uint32_t>(arrays.triangles.size())});
-  Layout layout(device.device.properties().max_block_bytes);
-  BuildPlan build = plan_build(layout, static_cast<std::uint32_t>(arrays.triangles.size()),
-                               device.build_options(options, morton_bits_for(options, arrays.triangles)));
-  TraceOptions trace_options = device.trace_options(options);
-  trace_options.wide = device.walks_wide(options, build.triangle_count);
+  Layout layout(device.properties().max_block_bytes);
+  BuildPlan build =
+      plan_build(layout, static_cast<std::uint32_t>(arrays.triangles.size()),
+                 device.build_options(build_options_of(options, morton_bits_for(options, arrays.triangles))));
+  const TraceOptions trace_options = device.picture_options(trace_options_of(options), build.triangle_count);
   std::optional<WidePlan> wide;
-  if (trace_options.wide) wide = plan_wide(layout, build, &build);
+  if (is_wide(trace_options.walk)) wide = plan_wide(layout, build, &build);
   const TracePlan trace =
       plan_trace(layout, build, static_cast<std::uint32_t>(arrays.materials.size()), trace_options);
-  LockstepExecutor executor(device.device, layout);
+  LockstepExecutor executor(device.device(), layout);
   upload_frame(executor, build, trace, arrays,
                make_film(scene, options.camera, options.width, options.height, options.samples));
 
@@ -87,7 +87,7 @@ int run_lockstep(const Options& options) {
   if (talks(options)) {
     std::printf("%s: %zu triangles, %u rounds of at most %u, %u stages run on %s and by their twins\n",
                 scene.name.c_str(), arrays.triangles.size(), state.round_count, build.rounds_bound,
-                executor.stages_run(), device.device.properties().name.c_str());
+                executor.stages_run(), device.properties().name.c_str());
     print_nearly(executor.nearly());
     if (difference) {
       std::printf("first difference: stage %s, slot %s, index %llu\n  cpu %s\n  gpu %s\n%s",
@@ -104,7 +104,7 @@ int run_lockstep(const Options& options) {
   add_nearly(json, executor.nearly());
   write_json(options.json, json);
   if (!error.empty()) throw DeviceError(error);
-  const int validation = validation_status(device.device);
+  const int validation = validation_status(device.device());
   if (difference) {
     std::fprintf(stderr, "coppice: stage %s differs at %s[%llu]\n", difference->stage.c_str(),
                  difference->slot.c_str(), static_cast<unsigned long long>(difference->index));

@@ -104,16 +104,18 @@ int run_render(const Options& options) {
   if (on_device) device.emplace(open_device(options, use));
   const double device_ms = device ? ms_since(device_start) : 0;
   const bool split = options.kernels || !options.json.empty() || !options.trace_events.empty();
-  const RenderReport report = options.tracer == "gpu"
-                                  ? render_on_device(*device, scene, options, split)
-                                  : render_on_host(device ? &*device : nullptr, scene, options);
+  const RenderReport report =
+      options.tracer == "gpu"
+          ? render_on_device(*device, scene, options,
+                             device->picture_options(trace_options_of(options), use.triangle_count), split)
+          : render_on_host(device ? &*device : nullptr, scene, options);
   const InterruptionGuard guard;  // no half-written file
   const auto write_start = Clock::now();
   write_png(options.output, options.width, options.height, report.image);
   if (talks(options)) print_render(report, options, load_ms, device_ms, ms_since(write_start));
   write_json(options.json, to_json(report, scene, options));
   throw_if_interrupted();
-  return device ? validation_status(device->device) : 0;
+  return device ? validation_status(device->device()) : 0;
 }
 
 }  // namespace coppice

@@ -230,8 +230,8 @@ int run_stability(const Options& options) {
     if (!leaks.empty()) print_leaks(leaks);
     std::printf("\nA ray with a NaN takes %.2f times as long as a random one.\n", nan_cost);
   }
-  Json json = {{"device", device.device.properties().name},
-               {"driver", device.device.properties().driver},
+  Json json = {{"device", device.properties().name},
+               {"driver", device.properties().driver},
                {"examined", cases.examined},
                {"cases", Json::array()},
                {"leaks", Json::array()},
@@ -240,7 +240,7 @@ int run_stability(const Options& options) {
   for (const StabilityCase& one : cases.rows) json["cases"].push_back(to_json(one));
   for (const LeakCount& leak : leaks) json["leaks"].push_back(to_json(leak));
   write_json(options.json, json);
-  const int validation = validation_status(device.device);
+  const int validation = validation_status(device.device());
   if (failed) std::fprintf(stderr, "coppice: %llu rows are not stable\n", static_cast<Count>(failed));
   return failed ? 1 : validation;
 }

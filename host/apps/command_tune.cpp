@@ -18,23 +18,23 @@ namespace coppice {
 namespace {
 
 // What a stage's variants are measured on. Throws DeviceError if the result is wrong.
-using Workload = BenchRow (*)(CheckedDevice&, const Options&, std::string_view variant);
+using Workload = BenchRow (*)(CheckedDevice&, const Options&, std::uint32_t variant);
 
 struct TunedStage {
   std::string_view stage;
   Workload workload;
 };
 
-BenchRow sort_workload(CheckedDevice& device, const Options& options, std::string_view) {
+BenchRow sort_workload(CheckedDevice& device, const Options& options, std::uint32_t) {
   return bench_keys(device, options, options.most / 4 * 4, 1, true, "random");
 }
 
-// Its variants are named as trees are.
-BenchRow trace_workload(CheckedDevice& device, const Options& options, std::string_view variant) {
+// Its variants are walks.
+BenchRow trace_workload(CheckedDevice& device, const Options& options, std::uint32_t variant) {
   Options quarter = options;  // of a picture: enough rays for any device
   quarter.width = (quarter.width + 1) / 2;
   quarter.height = (quarter.height + 1) / 2;
-  return bench_primary_rays(device, quarter, std::string(variant));
+  return bench_primary_rays(device, quarter, Walk{variant});
 }
 
 // A line for each of variant_stages().
@@ -42,15 +42,21 @@ constexpr TunedStage tuned_stages[] = {{"sort", sort_workload}, {"trace", trace_
 
 constexpr std::uint32_t turns = 5;
 
+void set_variant(CheckedDevice& device, const VariantStage& stage, std::uint32_t value) {
+  Variants variants = device.variants();
+  variants.*stage.value = value;
+  device.set_variants(variants);
+}
+
 // The rows of each variant that can run, one a turn: in turn, as other work on the machine comes and goes.
 std::vector<std::vector<BenchRow>> measure_variants(CheckedDevice& device, const VariantStage& stage,
                                                     Workload workload, const Options& options) {
   std::vector<std::vector<BenchRow>> rows(stage.values.size());
   for (std::uint32_t turn = 0; turn < turns; ++turn) {
     for (std::uint32_t value = 0; value < stage.values.size(); ++value) {
-      if (!device.lookback && stage.without_lookback(value) != value) continue;
-      device.variants.*stage.value = value;
-      rows[value].push_back(workload(device, options, stage.values[value]));
+      if (!device.lookback() && stage.without_lookback(value) != value) continue;
+      set_variant(device, stage, value);
+      rows[value].push_back(workload(device, options, value));
     }
   }
   return rows;
@@ -70,8 +76,8 @@ const char* verdict(const TunedChoice& choice, std::uint32_t value, std::uint32_
 
 // Keeps in device.variants what is faster for sure, or else the rule's.
 Json tune_stage(CheckedDevice& device, const VariantStage& stage, Workload workload, const Options& options) {
-  const std::uint32_t preset = stage.rule(device.device.properties());
-  const std::uint32_t rule = device.lookback ? preset : stage.without_lookback(preset);
+  const std::uint32_t preset = stage.rule(device.properties());
+  const std::uint32_t rule = device.lookback() ? preset : stage.without_lookback(preset);
   const auto measured = measure_variants(device, stage, workload, options);
   std::vector<std::vector<double>> medians(measured.size());
   std::vector<Spread> spreads;
@@ -80,7 +86,7 @@ Json tune_stage(CheckedDevice& device, const VariantStage& stage, Workload workl
   const TunedChoice choice = choose_variant(medians, rule);
   // Where lookback returns one day, the rule's own variant is the one to have.
   const std::uint32_t kept = choice.chosen == rule ? preset : choice.chosen;
-  device.variants.*stage.value = kept;
+  set_variant(device, stage, kept);
   Json rows = Json::array();
   for (std::uint32_t value = 0; value < measured.size(); ++value) {
     if (measured[value].empty()) continue;
@@ -120,12 +126,12 @@ std::filesystem::path checked_table_file(const Device& device) {
 
 int run_tune(const Options& options) {
   CheckedDevice device = open_device(options, {});
-  const DeviceProperties& properties = device.device.properties();
-  const std::filesystem::path file = checked_table_file(device.device);
+  const DeviceProperties& properties = device.properties();
+  const std::filesystem::path file = checked_table_file(device.device());
   if (talks(options)) {
     std::printf("%s, %s\n  %-10s %-15s %10s %10s %10s\n", properties.name.c_str(), properties.driver.c_str(),
                 "stage", "variant", "median ms", "min", "max");
-    if (!device.lookback) std::printf("  without lookback, and so without the variants that need it\n");
+    if (!device.lookback()) std::printf("  without lookback, and so without the variants that need it\n");
   }
   Json stages = Json::array();
   for (const VariantStage& stage : variant_stages()) {
@@ -133,13 +139,13 @@ int run_tune(const Options& options) {
       if (tuned.stage == stage.name) stages.push_back(tune_stage(device, stage, tuned.workload, options));
     }
   }
-  write_file(file, variant_table_text(device.variants, properties));
+  write_file(file, variant_table_text(device.variants(), properties));
   if (talks(options)) std::printf("written to %s\n", file.c_str());
   write_json(options.json, {{"device", properties.name},
                             {"driver", properties.driver},
                             {"stages", stages},
                             {"file", file.string()}});
-  return validation_status(device.device);
+  return validation_status(device.device());
 }
 
 }  // namespace coppice

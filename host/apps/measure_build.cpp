@@ -122,15 +122,15 @@ BuildReport measure_gpu_build(CheckedDevice& device, GpuExecutor& executor, cons
   events.write(options.trace_events);
   check_state(executor, plan);
 
-  report.device = device.device.properties().name;
-  report.driver = device.device.properties().driver;
+  report.device = device.properties().name;
+  report.driver = device.properties().driver;
   report.variants = to_string(plan.options.variants);
   report.lookback = plan.options.lookback;
   report.wall_ms = spread_of(wall_ms);
   report.runs = options.runs;
   const RunCounts counts = counts_of_build(executor, plan, wide);
   const KernelSums sums(split, counts);
-  const auto limit = find_copy_limit(device.device, sums.largest_dispatch());
+  const auto limit = find_copy_limit(device.device(), sums.largest_dispatch());
   report.kernels = kernel_table(sums, limit, untimed_ms);
   if (options.rounds) report.ploc_rounds = ploc_round_times(split, counts);
   report.rounds = executor.read(plan.state)[0].round_count;

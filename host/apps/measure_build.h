@@ -1,6 +1,6 @@
 #pragma once
 
-#include "apps/checked_device.h"
+#include "apps/open_device.h"
 #include "apps/report.h"
 #include "builders/bvh.h"
 #include "pipeline/wide.h"

@@ -18,7 +18,8 @@ struct RenderReport {
 // Builds in one submit and traces in as many as keep each short, with nothing but times read back in between;
 // with a CPU builder its tree is uploaded before. With `split` the frame is run once more for the times of
 // the kernels, and for the file of trace events. Throws Interrupted on SIGINT or SIGTERM between two submits.
-RenderReport render_on_device(CheckedDevice& device, const Scene& scene, const Options& options, bool split);
+RenderReport render_on_device(CheckedDevice& device, const Scene& scene, const Options& options,
+                              TraceOptions trace_options, bool split);
 
 // Traces by the independent CPU tracer; shades by the twins. With a builder on the device `device` builds the
 // tree. Throws Interrupted as well.

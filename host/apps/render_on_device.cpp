@@ -138,7 +138,7 @@ void split_kernels(CheckedDevice& device, GpuExecutor& executor, const TreeSteps
                   progress.add(piece.work);
                 });
   const auto limit =
-      find_copy_limit(device.device, std::max(tree_sums.largest_dispatch(), sums.largest_dispatch()));
+      find_copy_limit(device.device(), std::max(tree_sums.largest_dispatch(), sums.largest_dispatch()));
   report.kernels = kernel_table(sums, limit, report.trace_ms);
   if (!tree_steps.empty()) {
     const double build_ms = plan.build ? report.build.build_ms.median : 0;
@@ -149,8 +149,8 @@ void split_kernels(CheckedDevice& device, GpuExecutor& executor, const TreeSteps
 
 void describe_build(const CheckedDevice& device, const GpuExecutor& executor, const BuildPlan& build,
                     BuildReport& report) {
-  report.device = device.device.properties().name;
-  report.driver = device.device.properties().driver;
+  report.device = device.properties().name;
+  report.driver = device.properties().driver;
   report.variants = to_string(build.options.variants);
   report.lookback = build.options.lookback;
   report.rounds = executor.read(build.state)[0].round_count;
@@ -160,40 +160,41 @@ void describe_build(const CheckedDevice& device, const GpuExecutor& executor, co
 
 }  // namespace
 
-RenderReport render_on_device(CheckedDevice& device, const Scene& scene, const Options& options, bool split) {
+RenderReport render_on_device(CheckedDevice& device, const Scene& scene, const Options& options,
+                              TraceOptions trace_options, bool split) {
   const SceneArrays arrays = scene_arrays(scene);
   const auto triangle_count = static_cast<std::uint32_t>(arrays.triangles.size());
   const bool builds = find_device_builder(options.builder);
   RenderReport report;
-  report.trace_device = device.device.properties().name + ", " + device.device.properties().driver;
+  report.trace_device = device.properties().name + ", " + device.properties().driver;
   report.build = report_for(options, scene, arrays.triangles);
   Bvh bvh;
   if (!builds) report.build = measure_cpu_build(arrays.triangles, report.build, options.frames, bvh);
 
-  Layout layout(device.device.properties().max_block_bytes);
+  Layout layout(device.properties().max_block_bytes);
   FramePlan plan;
   if (builds)
-    plan.build = plan_build(layout, triangle_count, device.build_options(options, report.build.morton_bits));
+    plan.build = plan_build(layout, triangle_count,
+                            device.build_options(build_options_of(options, report.build.morton_bits)));
   plan.tree = builds ? *plan.build : plan_tree(layout, triangle_count, bvh.nodes.size());
-  TraceOptions trace_options = device.trace_options(options);
   trace_options.directional_light = scene.light.radiance != vec3(0);
-  trace_options.wide = report.walks_wide = device.walks_wide(options, triangle_count);
-  if (trace_options.wide && builds) {
+  report.walks_wide = is_wide(trace_options.walk);
+  if (report.walks_wide && builds) {
     plan.wide = plan_wide(layout, *plan.build, &*plan.build);
     plan.tree = *plan.build;
-  } else if (trace_options.wide) {
+  } else if (report.walks_wide) {
     plan.wide = plan_wide(layout, plan.tree);
   }
   plan.trace =
       plan_trace(layout, plan.tree, static_cast<std::uint32_t>(arrays.materials.size()), trace_options);
-  GpuExecutor executor(device.device, layout);
+  GpuExecutor executor(device.device(), layout);
   upload_frame(executor, plan.tree, plan.trace, arrays,
                make_film(scene, options.camera, options.width, options.height, options.samples));
   if (!builds) upload_tree(executor, plan.tree, bvh);
 
   const InterruptionGuard guard;
   const TreeSteps steps = tree_steps(executor, plan);
-  Pace pace = warm_up(executor, steps, plan, device.device.properties());
+  Pace pace = warm_up(executor, steps, plan, device.properties());
   TraceProgress progress(TracePieces(plan.tree, plan.trace).work(), options.frames + split);
   measure_frames(executor, steps, plan, pace, options.frames, progress, report);
   const RunCounts counts = counts_of_trace(executor.read(plan.trace.counters)[0]);

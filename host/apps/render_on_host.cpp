@@ -17,10 +17,10 @@ namespace {
 
 Bvh build_on_device(CheckedDevice& device, const SceneArrays& arrays, BuildReport& report,
                     const Options& options) {
-  Layout layout(device.device.properties().max_block_bytes);
+  Layout layout(device.properties().max_block_bytes);
   const BuildPlan plan = plan_build(layout, static_cast<std::uint32_t>(arrays.triangles.size()),
-                                    device.build_options(options, report.morton_bits));
-  GpuExecutor executor(device.device, layout);
+                                    device.build_options(build_options_of(options, report.morton_bits)));
+  GpuExecutor executor(device.device(), layout);
   executor.upload(plan.triangles, std::span<const Triangle>(arrays.triangles));
   report = measure_gpu_build(device, executor, plan, report, options);
   return {read_tree(executor, plan), executor.read(plan.state)[0].active_count, report.rounds};

@@ -36,10 +36,11 @@ struct BatchedRays {
 
 void build_in_lockstep(CheckedDevice& device, std::span<const Triangle> triangles, const Options& options,
                        StabilityCase& result, std::vector<Node>& nodes) {
-  Layout layout(device.device.properties().max_block_bytes);
-  const BuildPlan plan = plan_build(layout, static_cast<std::uint32_t>(triangles.size()),
-                                    device.build_options(options, morton_bits_for(options, triangles)));
-  LockstepExecutor executor(device.device, layout);
+  Layout layout(device.properties().max_block_bytes);
+  const BuildPlan plan =
+      plan_build(layout, static_cast<std::uint32_t>(triangles.size()),
+                 device.build_options(build_options_of(options, morton_bits_for(options, triangles))));
+  LockstepExecutor executor(device.device(), layout);
   executor.upload(plan.triangles, triangles);
   if (const auto difference = executor.run([&](Chain& chain) { append_build(chain, plan); })) {
     result.difference = difference->stage + ", " + difference->slot;
@@ -147,10 +148,9 @@ StabilityCase examine_case(CheckedDevice& device, const HardCase& hard_case, con
     batched.add(inside, inside_rays(centre_of(nodes[0]), triangles, stability.rays, stability.seed));
   }
   const std::vector<Ray> first = hard_rays(RayKind::RANDOM, triangles, nodes, stability.rays, stability.seed);
-  RayTracing tracing(device.device, nodes, triangles,
+  RayTracing tracing(device.device(), nodes, triangles,
                      static_cast<std::uint32_t>(batched.rays.size() + first.size()));
-  TraceOptions trace_options = device.trace_options(options);
-  trace_options.brute_force = false;
+  const TraceOptions trace_options = device.trace_options(trace_options_of(options));
   batched.add(bounced, tracing.bounce(first, trace_options, 1));
   for (const IntersectionVariant& variant : intersection_variants()) {
     result.variants.push_back(trace_variant(tracing, variant, trace_options, batched, nodes, triangles));

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "analysis/judge_hits.h"
-#include "apps/checked_device.h"
+#include "apps/open_device.h"
 #include "apps/ray_example.h"
 #include "scene/hard_cases.h"
 

@@ -18,8 +18,7 @@ constexpr std::uint64_t most_rays_at_once = 1u << 20;
 
 TraceOptions tree_options(const CheckedDevice& device, const Options& options,
                           const IntersectionVariant& variant) {
-  TraceOptions trace_options = device.trace_options(options);
-  trace_options.brute_force = false;
+  TraceOptions trace_options = device.trace_options(trace_options_of(options));
   trace_options.triangle_test = variant.triangle_test;
   trace_options.box_test = variant.box_test;
   return trace_options;
@@ -48,7 +47,7 @@ std::vector<LeakCount> count_leaks(CheckedDevice& device, const HardCase& hard_c
   const std::vector<Triangle> triangles =
       case_triangles(hard_case, hard_case.default_triangle_count, stability.seed, static_cast<float>(scale));
   const Bvh bvh = build_ploc(triangles, {});
-  RayTracing tracing(device.device, bvh.nodes, triangles,
+  RayTracing tracing(device.device(), bvh.nodes, triangles,
                      static_cast<std::uint32_t>(std::min(rays, most_rays_at_once)));
   std::vector<LeakCount> counts;
   for (const IntersectionVariant& variant : intersection_variants()) {
@@ -96,7 +95,7 @@ double cost_of_nan_rays(CheckedDevice& device, const Options& options) {
   constexpr std::uint32_t ray_count = 1u << 18;
   const std::vector<Triangle> triangles = case_triangles(*find_hard_case("sphere"), 20000, 1);
   const Bvh bvh = build_ploc(triangles, {});
-  RayTracing tracing(device.device, bvh.nodes, triangles, ray_count);
+  RayTracing tracing(device.device(), bvh.nodes, triangles, ray_count);
   const std::vector<Ray> sound = hard_rays(RayKind::RANDOM, triangles, bvh.nodes, ray_count, 1);
   std::vector<Ray> unsound = sound;
   for (std::size_t i = 0; i < unsound.size(); ++i) {

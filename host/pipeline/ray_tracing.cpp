@@ -76,9 +76,8 @@ TracedRays RayTracing::result(Executor& executor, std::size_t ray_count) const {
 
 double RayTracing::trace(std::size_t ray_count, const TraceOptions& options) {
   const HitPieces pieces(slots_.tree, slots_.rays, static_cast<std::uint32_t>(ray_count), options);
-  const Way way = options.brute_force ? Way::brute_force : options.wide ? Way::wide : Way::binary;
-  Pace& pace =
-      paces_.try_emplace(way, submit_target_ms(device_.properties()), first_work(options)).first->second;
+  Pace& pace = paces_.try_emplace(options.walk, submit_target_ms(device_.properties()), first_work(options))
+                   .first->second;
   double ms = 0;
   submit_pieces(gpu_, pieces, pace, Timestamps::total,
                 [&](const SubmittedPiece& piece) { ms += piece.times.total_ms; });

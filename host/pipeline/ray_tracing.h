@@ -52,9 +52,8 @@ class RayTracing {
   template <class Executor>
   TracedRays result(Executor& executor, std::size_t ray_count) const;
 
-  enum class Way { binary, wide, brute_force };
   Device& device_;
-  std::map<Way, Pace> paces_;
+  std::map<Walk, Pace> paces_;
   BuildState state_{};
   Layout layout_;
   Slots slots_;

@@ -71,7 +71,8 @@ struct CheckPlan {
     BuildOptions options = use.build;
     options.lookback = lookback;
     build = plan_build(layout, check_triangles, options);
-    if (std::ranges::any_of(use.traces, &TraceOptions::wide)) wide = plan_wide(layout, build, &build);
+    if (std::ranges::any_of(use.traces, is_wide, &TraceOptions::walk))
+      wide = plan_wide(layout, build, &build);
     for (std::size_t i = 0; i < use.traces.size(); ++i) {
       traces.push_back({layout.add<Ray>("rays", rays.size()), layout.add<Hit>("hits", rays.size()),
                         layout.add<TraceCounters>("counters", 1)});
@@ -79,7 +80,7 @@ struct CheckPlan {
   }
 
   std::uint32_t ray_count(const TraceOptions& options) const {
-    return options.brute_force ? brute_force_rays : static_cast<std::uint32_t>(rays.size());
+    return options.walk == Walk::brute_force ? brute_force_rays : static_cast<std::uint32_t>(rays.size());
   }
 
   template <class Executor>

@@ -13,7 +13,8 @@ namespace coppice {
 struct DeviceUse {
   bool builds = true;                // else the trees that it traces are the host's
   BuildOptions build{};              // but for `lookback`, which the check decides
-  std::vector<TraceOptions> traces;  // every tracer that it runs; sizes of pictures do not matter
+  std::vector<TraceOptions> traces;  // every tracer that it runs; the check has rays of its own
+  std::uint32_t triangle_count = 0;  // of the scene that it traces, by which a walk may be chosen
 };
 
 // Runs it for a small scene on the device and by the twins, before any result is shown: the tree must be the

@@ -21,7 +21,7 @@ void append_walk(Chain& chain, const TreeSlots& tree, const RaySlots& slots, con
   const auto rays = chain.at(slots.rays, range.first);
   const auto hits = chain.at(slots.hits, range.first);
   const auto counters = chain.at(slots.counters);
-  if (!options.wide) {
+  if (!is_wide(options.walk)) {
     chain.run(stages::trace_closest,
               {chain.at(tree.nodes), triangles, rays, hits, counters, chain.at(tree.state), range.count,
                options.stack_entries, options.triangle_test, options.box_test},
@@ -42,7 +42,7 @@ void append_walk(Chain& chain, const TreeSlots& tree, const RaySlots& slots, con
                            chain.at(tree.state),
                            range.count,
                            0};
-  if (options.packets) {
+  if (options.walk == Walk::wide_packets) {
     chain.run(stages::trace_wide, args, groups_of(range.count, TRACE_PACKET), {options.max_turns});
   } else {
     chain.run(stages::trace_wide_single, args, groups_of(range.count, TRACE_BLOCK), {options.max_turns});
@@ -65,19 +65,17 @@ std::uint64_t append_slice(Chain& chain, const TreeSlots& tree, const RaySlots& 
 }  // namespace
 
 bool can_trace_wide(const TraceOptions& options) {
-  return !options.brute_force && options.triangle_test == TRIANGLE_WATERTIGHT &&
+  return options.walk != Walk::brute_force && options.triangle_test == TRIANGLE_WATERTIGHT &&
          options.box_test == BOX_ROBUST;
 }
 
 bool has_closest_hits(const TreeSlots& tree, const RayRange& range, const TraceOptions& options) {
-  return range.next_triangle >= (options.brute_force ? std::max(tree.triangle_count, 1u) : 1u);
+  return range.next_triangle >= (options.walk == Walk::brute_force ? std::max(tree.triangle_count, 1u) : 1u);
 }
 
 std::uint64_t append_closest_hits(Chain& chain, const TreeSlots& tree, const RaySlots& slots, RayRange& range,
                                   const TraceOptions& options, std::uint64_t work) {
-  if (options.brute_force && options.wide)
-    throw std::invalid_argument("the wide tree is traced with the watertight and the robust test");
-  if (!options.brute_force) {
+  if (options.walk != Walk::brute_force) {
     append_walk(chain, tree, slots, range, options);
     range.next_triangle = std::max(tree.triangle_count, 1u);
     return range.count;

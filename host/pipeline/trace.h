@@ -5,13 +5,14 @@
 
 #include "interface/trace.h"
 #include "pipeline/build.h"
+#include "pipeline/walk.h"
 
 namespace coppice {
 
 struct TraceOptions {
   std::uint32_t width = 1024, height = 768;  // pixels
   std::uint32_t samples = 1;                 // per pixel
-  bool brute_force = false;                  // test every triangle instead of walking the tree
+  Walk walk = Walk::binary;  // wide ones need the slots of the wide tree, watertight and robust
   // Turns of the traversal loop and pairs of nodes it visits a turn; fewer turns than nodes only where a
   // driver ends long loops by itself.
   std::uint32_t max_turns = 0xffffffffu;
@@ -20,8 +21,6 @@ struct TraceOptions {
   std::uint32_t stack_entries = TRACE_STACK_LIMIT;
   std::uint32_t triangle_test = TRIANGLE_WATERTIGHT;
   std::uint32_t box_test = BOX_ROBUST;
-  bool wide = false;              // walk the wide tree; needs its slots, watertight and robust
-  bool packets = true;            // through the wide tree in packets; else each ray by itself
   bool directional_light = true;  // what the scene calls for
 };
 

@@ -10,7 +10,7 @@ namespace {
 
 // Of the least step: a ray, or its tests of one slice of the triangles.
 std::uint64_t step_work(const TreeSlots& tree, const TraceOptions& options) {
-  return options.brute_force ? std::clamp(tree.triangle_count, 1u, BRUTE_FORCE_SLICE) : 1;
+  return options.walk == Walk::brute_force ? std::clamp(tree.triangle_count, 1u, BRUTE_FORCE_SLICE) : 1;
 }
 
 RayRange next_range(const TreeSlots& tree, const TraceOptions& options, std::uint32_t first,
@@ -33,7 +33,7 @@ std::uint32_t range_rays(const TreeSlots& tree, const TraceOptions& options, std
 }
 
 std::uint64_t work_of(const TreeSlots& tree, const TraceOptions& options, std::uint64_t rays) {
-  return rays * (options.brute_force ? std::max(tree.triangle_count, 1u) : 1);
+  return rays * (options.walk == Walk::brute_force ? std::max(tree.triangle_count, 1u) : 1);
 }
 
 std::uint64_t HitPieces::append(Chain& chain, std::uint64_t work) {

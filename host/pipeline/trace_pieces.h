@@ -16,7 +16,9 @@ std::uint32_t range_rays(const TreeSlots& tree, const TraceOptions& options, std
 std::uint64_t work_of(const TreeSlots& tree, const TraceOptions& options, std::uint64_t rays);
 
 // Of the first submit, when nothing is known of the device's speed.
-inline std::uint64_t first_work(const TraceOptions& options) { return options.brute_force ? 1u << 20 : 4096; }
+inline std::uint64_t first_work(const TraceOptions& options) {
+  return options.walk == Walk::brute_force ? 1u << 20 : 4096;
+}
 
 // The closest hits of the first rays of their slots.
 class HitPieces {

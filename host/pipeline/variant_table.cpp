@@ -1,6 +1,5 @@
 #include "pipeline/variant_table.h"
 
-#include <cstdio>
 #include <sstream>
 #include <vector>
 
@@ -50,7 +49,7 @@ std::string parse_variant_table(const std::string& text, const DeviceProperties&
   return {};
 }
 
-Variants variants_of(const Device& device) {
+Variants variants_of(const Device& device, const std::function<void(const std::string&)>& note) {
   Variants variants = default_variants(device.properties());
   const std::filesystem::path path = device.kept_file("variants");
   if (path.empty()) return variants;
@@ -58,9 +57,7 @@ Variants variants_of(const Device& device) {
   if (!kept.found) return variants;
   const std::string error =
       kept.refused.empty() ? parse_variant_table(kept.bytes, device.properties(), variants) : kept.refused;
-  if (!error.empty()) {
-    std::fprintf(stderr, "note: %s %s; ignored (coppice tune writes it anew)\n", path.c_str(), error.c_str());
-  }
+  if (!error.empty() && note) note(path.string() + " " + error + "; ignored (coppice tune writes it anew)");
   return variants;
 }
 

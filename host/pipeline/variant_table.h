@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include "pipeline/variants.h"
@@ -16,8 +17,8 @@ std::string variant_table_text(const Variants& variants, const DeviceProperties&
 // missing, double or unknown. Then `variants` stay as they were.
 std::string parse_variant_table(const std::string& text, const DeviceProperties& device, Variants& variants);
 
-// The table of this device, or the rules' choice where there is none. One line on stderr for a table of no
+// The table of this device, or the rules' choice where there is none. `note` takes a line for a table of no
 // use.
-Variants variants_of(const Device& device);
+Variants variants_of(const Device& device, const std::function<void(const std::string&)>& note);
 
 }  // namespace coppice

@@ -20,15 +20,17 @@ std::uint32_t sort_without_lookback(std::uint32_t value) {
   return value == SORT_ONESWEEP_RUNS || value == SORT_ONESWEEP_MATCH ? std::uint32_t{SORT_SCAN} : value;
 }
 
-// In the order of TraceVariant.
-constexpr std::string_view trace_values[] = {"binary", "wide-packets", "wide-single"};
+// Those through a tree.
+constexpr std::span<const std::string_view> trace_values(WALK_NAMES, 3);
 
 // Packets read a node once for all of their rays, which is what costs a CPU device, but for one that ends
 // long loops by itself. GPUs hide the time that reads take, and lose by packets what their rays visit in
 // vain: Aila and Laine 2009, Ylitie, Karras and Laine 2017.
 std::uint32_t trace_rule(const DeviceProperties& device) {
-  if (device.type == DeviceType::cpu) return device.loop_turn_limit == 0 ? TRACE_WIDE_PACKETS : TRACE_BINARY;
-  return device.subgroup_size >= 32 ? TRACE_WIDE_SINGLE : TRACE_BINARY;
+  const auto variant = [](Walk walk) { return static_cast<std::uint32_t>(walk); };
+  if (device.type == DeviceType::cpu)
+    return variant(device.loop_turn_limit == 0 ? Walk::wide_packets : Walk::binary);
+  return variant(device.subgroup_size >= 32 ? Walk::wide_single : Walk::binary);
 }
 
 std::uint32_t trace_without_lookback(std::uint32_t value) { return value; }

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "gpu/device.h"
+#include "pipeline/walk.h"
 
 namespace coppice {
 
@@ -18,17 +19,12 @@ enum SortVariant : std::uint32_t {
   SORT_ONESWEEP_MATCH,  // the same; a subgroup ranks its keys by ballots
 };
 
-// Which tree a picture's rays walk, and how. All give the same hits.
-enum TraceVariant : std::uint32_t {
-  TRACE_BINARY,
-  TRACE_WIDE_PACKETS,  // rays in packets of a subgroup
-  TRACE_WIDE_SINGLE,   // each ray by itself
-};
-
 // Which of the variants of each stage runs. No result depends on it.
 struct Variants {
   std::uint32_t sort = SORT_ONESWEEP_RUNS;
-  std::uint32_t trace = TRACE_BINARY;
+  std::uint32_t trace = 0;  // a Walk through a tree
+
+  Walk walk() const { return Walk{trace}; }
 
   bool operator==(const Variants&) const = default;
 };

@@ -35,7 +35,7 @@ BuiltTree build_on(Device& device, std::span<const Triangle> triangles, const Bu
 TracedRays trace_on_device(std::span<const Node> nodes, std::span<const Triangle> triangles,
                            std::span<const Ray> rays, const TraceOptions& options) {
   TraceOptions with_brute_force = options;
-  with_brute_force.brute_force = nodes.empty();
+  if (nodes.empty()) with_brute_force.walk = Walk::brute_force;
   RayTracing tracing(test_device(), nodes, triangles, static_cast<std::uint32_t>(rays.size()));
   return tracing.on_device(rays, with_brute_force);
 }
