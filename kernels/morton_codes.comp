@@ -4,6 +4,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/morton.h"
+#include "lib/device_count.glsl"
 #include "lib/node_words.glsl"
 #include "lib/normalised.glsl"
 #include "lib/subgroup_run.glsl"
@@ -48,8 +49,10 @@ uvec3 grid_cell(Aabb box, Grid grid) {
 bool is_empty(Aabb box) { return box.box_min.x > box.box_max.x; }
 
 void main() {
+  uint count = counted(args.count_at, args.triangle_count);
+  if (gl_WorkGroupID.x * MORTON_TILE >= count) return;
   Grid grid = scene_grid(args.state.at[0], 10u * args.key_words);
-  Run run = subgroup_run(gl_WorkGroupID.x * MORTON_TILE, MORTON_PER_INVOCATION, args.triangle_count);
+  Run run = subgroup_run(gl_WorkGroupID.x * MORTON_TILE, MORTON_PER_INVOCATION, count);
   [[dont_unroll]] for (uint i = run.first; i < run.last; i += LANES) {
     Aabb box = load_box(args.boxes, i);
     uvec2 key = uvec2(MORTON_INACTIVE);

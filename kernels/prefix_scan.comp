@@ -8,6 +8,7 @@
 layout(local_size_x = SCAN_GROUP) in;
 layout(push_constant, scalar) uniform Push { PrefixScanArgs args; };
 
+#include "lib/count_error.glsl"
 #include "lib/scan_tile.glsl"
 #define LOOKBACK_GROUP SCAN_GROUP
 #define LOOKBACK_SUMS SCAN_SUMS
@@ -46,6 +47,12 @@ void scan_run(uint tile, uint sum) {
     target.at[i] = u64vec2(packUint2x32(uvec2(sum, second)), packUint2x32(uvec2(third, fourth)));
     sum = fourth + words.w;
   }
+  uvec2 rest = rest_of(run);
+  [[dont_unroll]] for (uint i = rest.x; i < rest.y; ++i) {
+    uint word = UintBuffer(args.source).at[i];
+    UintBuffer(args.target).at[i] = sum;
+    sum += word;
+  }
 }
 
 void main() {
@@ -56,6 +63,9 @@ void main() {
     barrier();
     tile = started_tile(ticket, gl_NumWorkGroups.x);
   }
+  word_count = counted(args.count_at, args.word_count);
+  if (tile == 0u && gl_LocalInvocationIndex == 0u) note_count(args.state, args.count_at, args.word_count);
+  if (tile * SCAN_TILE_WORDS >= word_count) return;
   sum_tile(tile);
   uint before = sum_of_runs(gl_LocalInvocationIndex);  // now, as a fallback overwrites the runs' sums
   uint prefix;

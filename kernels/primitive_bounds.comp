@@ -3,6 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/bounds.h"
+#include "lib/count_error.glsl"
 #include "lib/ordered_float.glsl"
 #include "lib/node_words.glsl"
 #include "lib/subgroup_run.glsl"
@@ -33,6 +34,9 @@ void reduce_into_tile(uvec3 min_complement, uvec3 box_max, uint active_count) {
 
 void main() {
   uint lane = gl_LocalInvocationIndex;
+  uint count = counted(args.count_at, args.triangle_count);
+  if (gl_GlobalInvocationID.x == 0u) note_count(args.state, args.count_at, args.triangle_count);
+  if (gl_WorkGroupID.x * PRIMITIVE_BOUNDS_TILE >= count) return;
   if (lane == 0u) {
     tile_min_complement = uvec3(0u);
     tile_max = uvec3(0u);
@@ -42,8 +46,7 @@ void main() {
 
   uvec3 min_complement = uvec3(0u), box_max = uvec3(0u);
   uint active_count = 0u;
-  Run run =
-      subgroup_run(gl_WorkGroupID.x * PRIMITIVE_BOUNDS_TILE, PRIMITIVE_BOUNDS_PER_INVOCATION, args.triangle_count);
+  Run run = subgroup_run(gl_WorkGroupID.x * PRIMITIVE_BOUNDS_TILE, PRIMITIVE_BOUNDS_PER_INVOCATION, count);
   [[dont_unroll]] for (uint i = run.first; i < run.last; i += LANES) {
     Triangle t = load_triangle(args.triangles, i);
     Aabb box = Aabb(vec3(uintBitsToFloat(0x7f800000u)), vec3(uintBitsToFloat(0xff800000u)));

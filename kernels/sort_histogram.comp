@@ -4,6 +4,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/sort.h"
+#include "lib/device_count.glsl"
 
 layout(local_size_x = SORT_HISTOGRAM_GROUP) in;
 layout(push_constant, scalar) uniform Push { SortHistogramArgs args; };
@@ -17,10 +18,12 @@ void count_digit(uint lane, uint counter) {
 void main() {
   uint lane = gl_LocalInvocationIndex;
   uint word = gl_WorkGroupID.y;
+  uint count = counted(args.count_at, args.count);
+  if (gl_WorkGroupID.x * SORT_HISTOGRAM_TILE >= count) return;
   [[dont_unroll]] for (uint i = 0u; i < SORT_HISTOGRAM_ROW; ++i) rows[lane][i] = 0u;
 
   uint first = gl_WorkGroupID.x * SORT_HISTOGRAM_TILE + lane * SORT_HISTOGRAM_RUN;
-  uint last = min(first + SORT_HISTOGRAM_RUN, args.count);
+  uint last = min(first + SORT_HISTOGRAM_RUN, count);
   [[dont_unroll]] for (uint i = first; i < last; ++i) {
     uint key = args.keys.at[i * args.key_words + word];
     count_digit(lane, key & 255u);

@@ -4,10 +4,13 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/sort.h"
+#include "lib/count_error.glsl"
 
 layout(local_size_x_id = 4) in;
 layout(push_constant, scalar) uniform Push { SortPassArgs args; };
 layout(constant_id = 5) const bool HAS_VALUES = true;  // false: of keys alone
+
+uint key_count;
 
 #include "lib/subgroup_match.glsl"
 #include "lib/sort_tile.glsl"
@@ -52,8 +55,8 @@ void scatter(uint tile) {
   uvec2 run = run_of(tile);
   [[dont_unroll]] for (uint first = run.x; first < run.y; first += STRIDE) {
     uint i = first + lane;
-    uint place = take_place(i < args.count ? digit_of(i) : SORT_DIGITS);
-    if (i < args.count) {
+    uint place = take_place(i < key_count ? digit_of(i) : SORT_DIGITS);
+    if (i < key_count) {
       for (uint word = 0u; word < args.key_words; ++word)
         args.keys_out.at[place * args.key_words + word] = args.keys_in.at[i * args.key_words + word];
       if (HAS_VALUES) args.values_out.at[place] = args.values_in.at[i];
@@ -66,6 +69,9 @@ void main() {
   if (gl_LocalInvocationIndex == 0u) ticket = atomicAdd(args.ticket.at[0], 1u);
   barrier();
   uint tile = started_tile(ticket, gl_NumWorkGroups.x);
+  key_count = counted(args.count_at, args.count);
+  if (tile == 0u && gl_LocalInvocationIndex == 0u) note_count(args.state, args.count_at, args.count);
+  if (tile * args.tile_keys >= key_count) return;
   if (!find_tile_prefix(tile)) {
     if (gl_LocalInvocationIndex == 0u) atomicOr(args.state.at[0].error_word, ERROR_SORT_LOOKBACK);
     return;

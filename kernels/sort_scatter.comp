@@ -12,6 +12,7 @@ layout(constant_id = 2) const bool HAS_VALUES = true;  // false: of keys alone
 layout(constant_id = 3) const bool ONE_TILE = false;   // args.count <= args.tile_keys
 
 #include "lib/subgroup_match.glsl"
+#include "lib/count_error.glsl"
 #include "lib/sort_counters.glsl"
 
 struct Pair {
@@ -59,13 +60,15 @@ void scatter(Pair pair, bool exists) {
 }
 
 void main() {
+  if (gl_GlobalInvocationID.x == 0u) note_count(args.state, args.count_at, args.count);
+  uvec2 places = places_of_tile();
+  if (places.y == 0u) return;
   if (ONE_TILE) {
-    count_tile();
+    count_tile(places);
     scan_counters();
   } else {
     load_counters();
   }
-  uvec2 places = places_of_tile();
   [[dont_unroll]] for (uint first = places.x; first < places.y; first += 2u * LANES) {
     uvec2 at = first + lane() + uvec2(0u, LANES);
     uvec2 read = min(at, uvec2(places.y - 1u));

@@ -8,9 +8,12 @@ layout(local_size_x_id = DEVICE_SUBGROUP_SIZE_ID) in;
 layout(push_constant, scalar) uniform Push { SortScatterArgs args; };
 
 #include "lib/subgroup_match.glsl"
+#include "lib/device_count.glsl"
 #include "lib/sort_counters.glsl"
 
 void main() {
-  count_tile();
+  uvec2 places = places_of_tile();
+  if (places.y == 0u) return;
+  count_tile(places);
   store_counters();
 }

@@ -3,6 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/sort.h"
+#include "lib/device_count.glsl"
 
 layout(local_size_x = SORT_TILE_SCAN_GROUP) in;
 layout(constant_id = 0) const uint DIGIT_BITS = SORT_NARROW_BITS;  // args.digit_bits
@@ -12,9 +13,9 @@ const uint DIGITS = 1u << DIGIT_BITS;
 
 shared uint sums[DIGITS];
 
-void sum_tiles(uint digit) {
+void sum_tiles(uint digit, uint tile_count) {
   uint sum = 0u;
-  [[dont_unroll]] for (uint tile = 0u; tile < args.tile_count; ++tile)
+  [[dont_unroll]] for (uint tile = 0u; tile < tile_count; ++tile)
     sum += args.tile_digits.at[tile * DIGITS + digit];
   sums[digit] = sum;
 }
@@ -30,21 +31,22 @@ void scan_digits() {
   }
 }
 
-void place_tiles(uint digit) {
+void place_tiles(uint digit, uint tile_count) {
   uint place = sums[digit];
-  [[dont_unroll]] for (uint tile = 0u; tile < args.tile_count; ++tile) {
+  [[dont_unroll]] for (uint tile = 0u; tile < tile_count; ++tile) {
     uint i = tile * DIGITS + digit;
-    uint tile_count = args.tile_digits.at[i];
+    uint keys = args.tile_digits.at[i];
     args.tile_digits.at[i] = place;
-    place += tile_count;
+    place += keys;
   }
 }
 
 void main() {
   uint first = gl_LocalInvocationIndex;
-  [[dont_unroll]] for (uint digit = first; digit < DIGITS; digit += SORT_TILE_SCAN_GROUP) sum_tiles(digit);
+  uint tile_count = (counted(args.count_at, args.count) + args.tile_keys - 1u) / args.tile_keys;
+  [[dont_unroll]] for (uint digit = first; digit < DIGITS; digit += SORT_TILE_SCAN_GROUP) sum_tiles(digit, tile_count);
   barrier();
   if (gl_SubgroupID == 0u) scan_digits();
   barrier();
-  [[dont_unroll]] for (uint digit = first; digit < DIGITS; digit += SORT_TILE_SCAN_GROUP) place_tiles(digit);
+  [[dont_unroll]] for (uint digit = first; digit < DIGITS; digit += SORT_TILE_SCAN_GROUP) place_tiles(digit, tile_count);
 }

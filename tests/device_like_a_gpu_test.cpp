@@ -8,6 +8,7 @@
 #include "apps/frame.h"
 #include "pipeline/ray_tracing.h"
 #include "scene/hard_cases.h"
+#include "stages/gpu_executor.h"
 #include "support/device_run.h"
 
 namespace coppice {
@@ -64,6 +65,28 @@ TEST_F(LikeAGpu, SameTreesByEveryBuilder) {
                              (lookback ? "" : ", without lookback"));
       }
     }
+  }
+}
+
+// Of several tiles of the sort, of which the last ones have no keys.
+TEST_F(LikeAGpu, TheTreeOfAsManyTrianglesAsTheDeviceSays) {
+  const std::vector<Triangle> triangles = random_triangles(60000, 9);
+  constexpr uint count = 20001;
+  for (const std::uint32_t sort : {SORT_SCAN, SORT_ONESWEEP_RUNS, SORT_ONESWEEP_MATCH}) {
+    BuildOptions options;
+    options.variants.sort = sort;
+    Layout layout(device().properties().max_block_bytes);
+    const BuildPlan plan = plan_build(layout, static_cast<std::uint32_t>(triangles.size()), options);
+    const auto count_slot = layout.add<uint>("count", 1);
+    GpuExecutor executor(device(), layout);
+    executor.upload(plan.triangles, std::span<const Triangle>(triangles));
+    executor.upload(count_slot, std::span<const uint>(&count, 1));
+    Chain chain = executor.chain();
+    append_build(chain, plan, {.count_at = chain.at(count_slot)});
+    executor.record(chain.steps()).submit_and_wait(submit_limit_seconds);
+    const BuiltTree alone = build_on(test_device(), std::span(triangles).first(count), options);
+    const std::vector<Node> nodes = executor.read(Slot<Node>{plan.nodes.place, alone.nodes.size()});
+    EXPECT_EQ(tree_hash(nodes), tree_hash(alone.nodes)) << to_string(options.variants);
   }
 }
 

@@ -119,7 +119,7 @@ TEST_F(DeviceScan, NamesAPlantedFaultByStageAndSlot) {
       {faulty<&stages::prefix_scan,
               [](const void* args) {
                 const auto& scan = *static_cast<const PrefixScanArgs*>(args);
-                ++scan.target[scan.quad_count].x;  // one past the end
+                ++scan.target[(scan.word_count + 3) / 4].x;  // one past the end
               }>(),
        "scan_target", true},
       {faulty<&stages::scan_tile_sums,

@@ -130,7 +130,7 @@ TEST(Traffic, OfAScanWithAndWithoutLookback) {
       if (stage_of(step)) bytes[stage_of(step)->name] += modelled_bytes(step, {}).value();
     }
     EXPECT_EQ(bytes["scan_tile_sums"], lookback ? 0u : 160000u + 3 * 4);
-    EXPECT_EQ(bytes["prefix_scan"], lookback ? 320000u + 3 * 24 : 320000u + 3 * 4 + 32 + 4);
+    EXPECT_EQ(bytes["prefix_scan"], lookback ? 320000u + 3 * 24 : 320000u + 3 * 4 + 2 * 12 + 4);
   }
 }
 

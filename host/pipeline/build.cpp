@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "stages/divide_up.h"
 #include "stages/stages.h"
 
 namespace coppice {
@@ -15,17 +16,23 @@ static_assert(std::min({PRIMITIVE_BOUNDS_TILE, MORTON_TILE, SORT_HISTOGRAM_TILE,
                         SORT_MATCH_TILE, SORT_SCAN_TILE, PLOC_LEAVES_TILE}) >= PLOC_MERGE_TILE);
 static_assert(PLOC_FINISH_CLUSTERS <= PLOC_MERGE_TILE, "the finish takes its clusters for one tile");
 
-void append_bounds(Chain& chain, const BuildPlan& plan) {
-  chain.run(stages::primitive_bounds,
-            {chain.at(plan.triangles), chain.at(plan.boxes), chain.at(plan.state), plan.triangle_count, 0},
-            groups_of(plan.triangle_count, PRIMITIVE_BOUNDS_TILE));
+// A count on the device may be larger than a plan for none takes: then, too, one workgroup says so.
+std::uint32_t noting_groups(std::uint32_t groups, UintBuffer count_at) {
+  return std::max(groups, count_at.value ? 1u : 0u);
 }
 
-void append_morton_codes(Chain& chain, const BuildPlan& plan) {
+void append_bounds(Chain& chain, const BuildPlan& plan, UintBuffer count_at) {
+  chain.run(stages::primitive_bounds,
+            {chain.at(plan.triangles), chain.at(plan.boxes), chain.at(plan.state), count_at,
+             plan.triangle_count, 0},
+            {noting_groups(divide_up(plan.triangle_count, PRIMITIVE_BOUNDS_TILE), count_at), 1, 1});
+}
+
+void append_morton_codes(Chain& chain, const BuildPlan& plan, UintBuffer count_at) {
   const std::uint32_t n = plan.triangle_count;
   chain.run(stages::morton_codes,
             {chain.at(plan.boxes), chain.at(plan.state), chain.at(plan.unsorted_keys),
-             chain.at(plan.unsorted_values), n, plan.options.morton_bits / 30},
+             chain.at(plan.unsorted_values), count_at, n, plan.options.morton_bits / 30},
             groups_of(n, MORTON_TILE));
 }
 
@@ -42,10 +49,11 @@ Address<uint> values_at(const Chain& chain, const BuildPlan& plan, int side) {
   return has_values(plan) ? chain.at(plan.values[side]) : Address<uint>{};
 }
 
-void append_onesweep(Chain& chain, const BuildPlan& plan) {
+void append_onesweep(Chain& chain, const BuildPlan& plan, UintBuffer count_at) {
   const std::uint32_t n = plan.triangle_count, key_words = plan.options.morton_bits / 30;
   const SortPlan& sort = plan.sort;
-  chain.run(stages::sort_histogram, {chain.at(plan.unsorted_keys), chain.at(plan.histogram), n, key_words},
+  chain.run(stages::sort_histogram,
+            {chain.at(plan.unsorted_keys), chain.at(plan.histogram), count_at, n, key_words},
             groups_of(n, SORT_HISTOGRAM_TILE, key_words));
   chain.run(stages::sort_digit_scan, {chain.at(plan.histogram), sort.passes, 0}, {sort.passes, 1, 1});
   const SortPassConstants constants{lookback_constants(plan.options), sort.match,
@@ -56,12 +64,13 @@ void append_onesweep(Chain& chain, const BuildPlan& plan) {
               {chain.at(plan.keys[in]), values_at(chain, plan, in), chain.at(plan.keys[out]),
                values_at(chain, plan, out), chain.at(plan.histogram, pass * SORT_DIGITS),
                chain.at(plan.sort_status, std::uint64_t{pass} * sort.tile_count * SORT_DIGITS),
-               chain.at(plan.sort_tickets, pass), chain.at(plan.state), n, key_words, pass, sort.tile_keys},
-              {sort.tile_count, 1, 1}, constants);
+               chain.at(plan.sort_tickets, pass), chain.at(plan.state), count_at, n, key_words, pass,
+               sort.tile_keys},
+              {noting_groups(sort.tile_count, count_at), 1, 1}, constants);
   }
 }
 
-void append_scanned_sort(Chain& chain, const BuildPlan& plan) {
+void append_scanned_sort(Chain& chain, const BuildPlan& plan, UintBuffer count_at) {
   const SortPlan& sort = plan.sort;
   const std::uint32_t key_words = plan.options.morton_bits / 30, bits = sort.digit_bits;
   for (std::uint32_t pass = 0; pass < sort.passes; ++pass) {
@@ -71,6 +80,8 @@ void append_scanned_sort(Chain& chain, const BuildPlan& plan) {
                                chain.at(plan.keys[out]),
                                values_at(chain, plan, out),
                                chain.at(plan.sort_digits),
+                               chain.at(plan.state),
+                               count_at,
                                plan.triangle_count,
                                key_words,
                                pass / sort.passes_per_word,
@@ -80,18 +91,19 @@ void append_scanned_sort(Chain& chain, const BuildPlan& plan) {
     const bool one_tile = sort.tile_count <= 1;  // it counts and scans for itself
     if (!one_tile) {
       chain.run(stages::sort_tile_counts, args, {sort.tile_count, 1, 1}, {bits, key_words});
-      chain.run(stages::sort_tile_scan, {args.tile_digits, sort.tile_count, bits}, {1, 1, 1}, {bits});
+      chain.run(stages::sort_tile_scan, {args.tile_digits, count_at, args.count, sort.tile_keys, bits, 0},
+                {1, 1, 1}, {bits});
     }
-    chain.run(stages::sort_scatter, args, {sort.tile_count, 1, 1},
+    chain.run(stages::sort_scatter, args, {noting_groups(sort.tile_count, count_at), 1, 1},
               {{bits, key_words}, has_values(plan), one_tile});
   }
 }
 
-void append_sort_passes(Chain& chain, const BuildPlan& plan) {
+void append_sort_passes(Chain& chain, const BuildPlan& plan, UintBuffer count_at) {
   if (plan.sort.onesweep)
-    append_onesweep(chain, plan);
+    append_onesweep(chain, plan, count_at);
   else
-    append_scanned_sort(chain, plan);
+    append_scanned_sort(chain, plan, count_at);
 }
 
 void append_round(Chain& chain, const BuildPlan& plan, std::uint32_t round) {
@@ -166,20 +178,20 @@ const NamedDeviceBuilder* find_device_builder(std::string_view name) {
   return nullptr;
 }
 
-void append_sort(Chain& chain, const BuildPlan& plan) {
+void append_sort(Chain& chain, const BuildPlan& plan, UintBuffer count_at) {
   clear_sort(chain, plan);
-  append_sort_passes(chain, plan);
+  append_sort_passes(chain, plan, count_at);
 }
 
-void append_build(Chain& chain, const BuildPlan& plan) {
+void append_build(Chain& chain, const BuildPlan& plan, const BuildInput& input) {
   chain.clear(plan.state);
   chain.clear(plan.rounds);
   chain.clear(plan.round_status[0]);
   chain.clear(plan.arrivals);
   clear_sort(chain, plan);
-  append_bounds(chain, plan);
-  append_morton_codes(chain, plan);
-  append_sort_passes(chain, plan);
+  append_bounds(chain, plan, input.count_at);
+  append_morton_codes(chain, plan, input.count_at);
+  append_sort_passes(chain, plan, input.count_at);
   if (plan.options.builder == DeviceBuilder::ploc)
     append_ploc(chain, plan);
   else

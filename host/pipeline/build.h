@@ -42,6 +42,13 @@ struct BuildOptions {
   Variants variants{};
 };
 
+// What a build reads.
+struct BuildInput {
+  // Null: as many primitives as the build was planned for. Or where the device has their number, of which at
+  // most those count; more are ERROR_COUNT, and BuildState::primitive_count says how many.
+  UintBuffer count_at;
+};
+
 // How the sort of a plan goes: a pure function of the number of keys and the options.
 struct SortPlan {
   bool onesweep = false;  // else counting, scanning and scattering
@@ -109,10 +116,10 @@ BuildPlan plan_sort(Layout& layout, std::uint32_t key_count, const BuildOptions&
                     bool has_values = true);
 
 // The pairs in unsorted_keys and unsorted_values, or the keys alone, sorted stably by key, to keys[0] and
-// values[0].
-void append_sort(Chain& chain, const BuildPlan& plan);
+// values[0]. `count_at` as in BuildInput.
+void append_sort(Chain& chain, const BuildPlan& plan, UintBuffer count_at = {});
 
 // Triangles to tree: bounds, Morton codes, sort, and the builder of the options.
-void append_build(Chain& chain, const BuildPlan& plan);
+void append_build(Chain& chain, const BuildPlan& plan, const BuildInput& input = {});
 
 }  // namespace coppice

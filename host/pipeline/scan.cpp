@@ -1,5 +1,6 @@
 #include "pipeline/scan.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -24,6 +25,7 @@ ScanPlan plan_scan(Layout& layout, std::uint64_t word_count, const BuildOptions&
   const std::uint64_t quads = divide_up(word_count, 4);
   ScanPlan plan;
   plan.options = options;
+  plan.word_count = static_cast<std::uint32_t>(word_count);
   plan.source = layout.add<uvec4>("scan_source", quads, Memory::source);
   plan.target = layout.add<uvec4>("scan_target", quads, Memory::target);
   plan.status = layout.add<uint>("scan_status",
@@ -32,23 +34,23 @@ ScanPlan plan_scan(Layout& layout, std::uint64_t word_count, const BuildOptions&
   return plan;
 }
 
-void append_scan(Chain& chain, const ScanPlan& plan) {
-  const auto quads = static_cast<std::uint32_t>(plan.source.count);
-  const auto tiles = static_cast<std::uint32_t>(divide_up(quads, SCAN_TILE));
+void append_scan(Chain& chain, const ScanPlan& plan, UintBuffer count_at) {
+  const std::uint32_t words = plan.word_count, tiles = divide_up(words, SCAN_TILE * 4);
   const auto source = chain.at(plan.source), target = chain.at(plan.target);
   const auto ticket = chain.at(plan.status), status = chain.at(plan.status, first_tile_word);
   const auto state = chain.at(plan.state);
   chain.clear(plan.status);
   if (!plan.options.lookback) {
-    const std::uint32_t sum_quads = divide_up(tiles, 4);
     const Address<uvec4> sums{status.value};
-    chain.run(stages::scan_tile_sums, {source, status, quads, 0}, {tiles, 1, 1});
-    // One tile, so in place; before it is nothing, as the unused ticket says.
-    chain.run(stages::prefix_scan, {sums, sums, ticket, ticket, state, sum_quads, 0},
+    chain.run(stages::scan_tile_sums, {source, status, count_at, words, 0}, {tiles, 1, 1});
+    // One tile, so in place; before it is nothing, as the unused ticket says. Tiles without words have a sum
+    // of 0.
+    chain.run(stages::prefix_scan, {sums, sums, ticket, ticket, state, {}, tiles, 0},
               {tiles > 0 ? 1u : 0u, 1, 1});
   }
-  chain.run(stages::prefix_scan, {source, target, status, ticket, state, quads, plan.options.lookback},
-            {tiles, 1, 1}, lookback_constants(plan.options));
+  chain.run(stages::prefix_scan,
+            {source, target, status, ticket, state, count_at, words, plan.options.lookback},
+            {std::max(tiles, count_at.value ? 1u : 0u), 1, 1}, lookback_constants(plan.options));
 }
 
 }  // namespace coppice

@@ -16,37 +16,62 @@ Bytes tiles(Bytes count, Bytes tile) { return count == 0 ? 0 : divide_up(count, 
 
 constexpr Bytes digit_row = SORT_DIGITS * sizeof(uint);  // of Onesweep: a word for each digit
 
+// Of so many, as many as the device says, where it does.
+Bytes counted(UintBuffer count_at, Bytes most, const RunCounts& counts) {
+  return count_at.value ? std::min<Bytes>(most, counts.primitive_count) : most;
+}
+
 Bytes pairs_moved(Bytes count, Bytes key_words, bool has_values) {
   return count * 2 * (4 * key_words + (has_values ? 4 : 0));
 }
 
-Bytes prefix_scan_bytes(const PrefixScanArgs& args) {
+Bytes prefix_scan_bytes(const PrefixScanArgs& args, Bytes words) {
   // As for a sort's pass; without lookback a word a tile is read.
-  const Bytes status = tiles(args.quad_count, SCAN_TILE) * 4 * (args.lookback ? 3 * SCAN_SUMS : 1);
-  return Bytes{args.quad_count} * 2 * sizeof(uvec4) + status;
+  const Bytes status = tiles(words, SCAN_TILE * 4) * 4 * (args.lookback ? 3 * SCAN_SUMS : 1);
+  return words * 2 * 4 + status;
+}
+
+std::optional<Bytes> scan_bytes(const Step& step, const RunCounts& counts) {
+  const auto words = [&](const auto& args) { return counted(args.count_at, args.word_count, counts); };
+  if (const auto* a = args_of(step, stages::scan_tile_sums))
+    return words(*a) * 4 + tiles(words(*a), SCAN_TILE * 4) * 4;
+  if (const auto* a = args_of(step, stages::prefix_scan)) return prefix_scan_bytes(*a, words(*a));
+  return std::nullopt;
+}
+
+std::optional<Bytes> primitive_bytes(const Step& step, const RunCounts& counts) {
+  const auto primitives = [&](const auto& args) {
+    return counted(args.count_at, args.triangle_count, counts);
+  };
+  if (const auto* a = args_of(step, stages::primitive_bounds))
+    return primitives(*a) * (sizeof(Triangle) + sizeof(Aabb));
+  if (const auto* a = args_of(step, stages::morton_codes))
+    return primitives(*a) * (sizeof(Aabb) + 4 * a->key_words + 4);
+  return std::nullopt;
 }
 
 // Words of all digits of all tiles, where Onesweep is not used.
-Bytes tile_digits_bytes(const SortScatterArgs& args) {
-  return tiles(args.count, args.tile_keys) * sizeof(uint) << args.digit_bits;
+Bytes tile_digits_bytes(const SortScatterArgs& args, Bytes count) {
+  return tiles(count, args.tile_keys) * sizeof(uint) << args.digit_bits;
 }
 
-std::optional<Bytes> sort_bytes(const Step& step) {
-  if (const auto* a = args_of(step, stages::sort_histogram)) return Bytes{a->count} * 4 * a->key_words;
+std::optional<Bytes> sort_bytes(const Step& step, const RunCounts& counts) {
+  const auto keys = [&](const auto& args) { return counted(args.count_at, args.count, counts); };
+  if (const auto* a = args_of(step, stages::sort_histogram)) return keys(*a) * 4 * a->key_words;
   if (const auto* a = args_of(step, stages::sort_digit_scan)) return Bytes{a->pass_count} * 2 * digit_row;
   // Status words are written as aggregate and as prefix, and read by the next tile.
   if (const auto* a = args_of(step, stages::sort_pass))
-    return pairs_moved(a->count, a->key_words, a->values_in.value != 0) +
-           tiles(a->count, a->tile_keys) * 3 * digit_row;
+    return pairs_moved(keys(*a), a->key_words, a->values_in.value != 0) +
+           tiles(keys(*a), a->tile_keys) * 3 * digit_row;
   if (const auto* a = args_of(step, stages::sort_tile_counts))
-    return Bytes{a->count} * 4 + tile_digits_bytes(*a);
+    return keys(*a) * 4 + tile_digits_bytes(*a, keys(*a));
   if (const auto* a = args_of(step, stages::sort_tile_scan))
-    return Bytes{a->tile_count} * 2 * sizeof(uint) << a->digit_bits;
+    return tiles(keys(*a), a->tile_keys) * 2 * sizeof(uint) << a->digit_bits;
   if (const auto* a = args_of(step, stages::sort_scatter)) {
-    const Bytes pairs = pairs_moved(a->count, a->key_words, a->values_in.value != 0);
+    const Bytes pairs = pairs_moved(keys(*a), a->key_words, a->values_in.value != 0);
+    const Bytes digits = tile_digits_bytes(*a, keys(*a));
     // One tile reads no counts but counts by itself.
-    const bool counts = a->count <= a->tile_keys;
-    return pairs + (counts ? Bytes{a->count} * 4 + tile_digits_bytes(*a) : 2 * tile_digits_bytes(*a));
+    return pairs + (a->count <= a->tile_keys ? keys(*a) * 4 + digits : 2 * digits);
   }
   return std::nullopt;
 }
@@ -174,14 +199,9 @@ std::optional<std::uint64_t> modelled_bytes(const Step& step, const RunCounts& c
   if (const Clear* const clear = std::get_if<Clear>(&step)) return clear->bytes;
   if (std::holds_alternative<Mark>(step)) return 0;
   if (const auto* a = args_of(step, stages::copy_words)) return Bytes{a->quad_count} * 2 * sizeof(uvec4);
-  if (const auto* a = args_of(step, stages::scan_tile_sums))
-    return Bytes{a->quad_count} * sizeof(uvec4) + tiles(a->quad_count, SCAN_TILE) * 4;
-  if (const auto* a = args_of(step, stages::prefix_scan)) return prefix_scan_bytes(*a);
-  if (const auto* a = args_of(step, stages::primitive_bounds))
-    return Bytes{a->triangle_count} * (sizeof(Triangle) + sizeof(Aabb));
-  if (const auto* a = args_of(step, stages::morton_codes))
-    return Bytes{a->triangle_count} * (sizeof(Aabb) + 4 * a->key_words + 4);
-  std::optional<Bytes> bytes = sort_bytes(step);
+  std::optional<Bytes> bytes = scan_bytes(step, counts);
+  if (!bytes) bytes = primitive_bytes(step, counts);
+  if (!bytes) bytes = sort_bytes(step, counts);
   if (!bytes) bytes = ploc_bytes(step, counts);
   if (!bytes) bytes = wide_bytes(step, counts);
   if (!bytes) bytes = trace_bytes(step, counts);

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "interface/morton.h"
+#include "twins/device_count.h"
 #include "twins/normalised.h"
 
 namespace coppice::twins {
@@ -31,10 +32,11 @@ struct Grid {
 }  // namespace
 
 void morton_codes(const MortonCodesArgs& args) {
-  if (args.triangle_count == 0) return;
+  const uint count = counted(args.count_at, args.triangle_count);
+  if (count == 0) return;
   const Normalisation normalise(args.state[0]);
   const Grid grid(normalise, 10 * args.key_words);
-  for (uint i = 0; i < args.triangle_count; ++i) {
+  for (uint i = 0; i < count; ++i) {
     uint* key = &args.keys[std::size_t{i} * args.key_words];
     args.values[i] = i;
     if (args.boxes[i].box_min.x > args.boxes[i].box_max.x) {

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "interface/bounds.h"
+#include "twins/count_error.h"
 #include "twins/normalised.h"
 
 namespace coppice::twins {
@@ -23,7 +24,9 @@ bool is_active(const Triangle& triangle) {
 void primitive_bounds(const PrimitiveBoundsArgs& args) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   BuildState& state = args.state[0];
-  for (uint i = 0; i < args.triangle_count; ++i) {
+  note_count(state, args.count_at, args.triangle_count);
+  const uint count = counted(args.count_at, args.triangle_count);
+  for (uint i = 0; i < count; ++i) {
     const Triangle& triangle = args.triangles[i];
     Aabb box{vec3(infinity), vec3(-infinity)};
     if (is_active(triangle)) {

@@ -1,15 +1,15 @@
 #include "interface/scan.h"
+#include "twins/device_count.h"
 
 namespace coppice::twins {
 
 void scan_tile_sums(const ScanTileSumsArgs& args) {
-  for (uint first = 0; first < args.quad_count; first += SCAN_TILE) {
+  constexpr uint tile_words = SCAN_TILE * 4;
+  const uint count = counted(args.count_at, args.word_count);
+  for (uint first = 0; first < count; first += tile_words) {
     uint sum = 0;
-    for (uint i = first; i < first + SCAN_TILE && i < args.quad_count; ++i) {
-      const uvec4& words = args.source[i];
-      sum += words.x + words.y + words.z + words.w;
-    }
-    args.tile_sums[first / SCAN_TILE] = sum;
+    for (uint i = first; i < first + tile_words && i < count; ++i) sum += args.source[i / 4][i % 4];
+    args.tile_sums[first / tile_words] = sum;
   }
 }
 

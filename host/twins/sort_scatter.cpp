@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "interface/sort.h"
+#include "twins/count_error.h"
 
 namespace coppice::twins {
 
@@ -12,10 +13,10 @@ uint digit_of(const SortScatterArgs& args, uint i) {
 }
 
 // Where the first key of each digit goes, if there is only one tile.
-void place_digits(const SortScatterArgs& args) {
+void place_digits(const SortScatterArgs& args, uint count) {
   const uint digits = 1u << args.digit_bits;
   std::fill_n(&args.tile_digits[0], digits, 0u);
-  for (uint i = 0; i < args.count; ++i) {
+  for (uint i = 0; i < count; ++i) {
     if (const uint digit = digit_of(args, i); digit + 1 < digits) ++args.tile_digits[digit + 1];
   }
   for (uint digit = 1; digit < digits; ++digit) args.tile_digits[digit] += args.tile_digits[digit - 1];
@@ -24,8 +25,10 @@ void place_digits(const SortScatterArgs& args) {
 }  // namespace
 
 void sort_scatter(const SortScatterArgs& args) {
-  if (args.count <= args.tile_keys) place_digits(args);
-  for (uint i = 0; i < args.count; ++i) {
+  const uint count = counted(args.count_at, args.count);
+  note_count(args.state[0], args.count_at, args.count);
+  if (args.count <= args.tile_keys && count > 0) place_digits(args, count);
+  for (uint i = 0; i < count; ++i) {
     const std::size_t source = std::size_t{i} * args.key_words;
     const std::size_t tile = i / args.tile_keys;
     const uint place = args.tile_digits[(tile << args.digit_bits) + digit_of(args, i)]++;

@@ -11,6 +11,7 @@ struct PrimitiveBoundsArgs {
   TriangleBuffer triangles;  // triangle_count
   AabbBuffer boxes;          // triangle_count; an inactive triangle's box has box_min > box_max
   BuildStateBuffer state;
+  UintBuffer count_at;  // null, or how many of them count
   uint triangle_count;
   uint padding;
 };

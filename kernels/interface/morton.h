@@ -13,6 +13,7 @@ struct MortonCodesArgs {
   BuildStateBuffer state;  // scene box, read
   UintBuffer keys;         // triangle_count * key_words, low word first
   UintBuffer values;       // triangle_count: triangle indices
+  UintBuffer count_at;     // null, or how many of them count
   uint triangle_count;
   uint key_words;  // 1: 30-bit codes, 2: 60-bit codes
 };

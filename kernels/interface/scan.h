@@ -1,4 +1,7 @@
 // Exclusive prefix sums of a list of words, modulo 2^32.
+//
+// `count_at` is null, or where the device has the number of words, of which at most `word_count` are scanned.
+// The last quad may be incomplete: what lies behind the last word is not touched.
 #ifndef COPPICE_INTERFACE_SCAN_H
 #define COPPICE_INTERFACE_SCAN_H
 #include "copy.h"
@@ -19,20 +22,22 @@ const uint SCAN_HALF_BITS = 16;
 const uint SCAN_MAX_TILES = 1 << (30 - SCAN_HALF_BITS);
 
 struct PrefixScanArgs {
-  WordQuadBuffer source;  // quad_count
-  WordQuadBuffer target;  // quad_count; without lookback it may be the source
+  WordQuadBuffer source;  // word_count
+  WordQuadBuffer target;  // word_count; without lookback it may be the source
   CoherentUintBuffer
       tile_status;            // lookback: tiles * SCAN_SUMS words of it; else the exclusive sums of the tiles
   CoherentUintBuffer ticket;  // one word
-  BuildStateBuffer state;     // error word
-  uint quad_count;
+  BuildStateBuffer state;     // primitive_count and error word
+  UintBuffer count_at;
+  uint word_count;
   uint lookback;  // 1: tile prefixes by lookback; 0: from scan_tile_sums and a scan of them
 };
 
 struct ScanTileSumsArgs {
-  WordQuadBuffer source;  // quad_count
+  WordQuadBuffer source;  // word_count
   UintBuffer tile_sums;   // tiles
-  uint quad_count;
+  UintBuffer count_at;
+  uint word_count;
   uint padding;
 };
 

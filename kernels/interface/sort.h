@@ -2,6 +2,9 @@
 // Onesweep (sort_histogram, sort_digit_scan and a sort_pass a digit), whose tiles get their prefixes by
 // lookback, and counting, scanning and scattering (sort_tile_counts, sort_tile_scan and sort_scatter a
 // digit), which never wait.
+//
+// `count_at` is null, or where the device has the number of keys, of which at most `count` are sorted. What
+// lies behind them is not touched.
 #ifndef COPPICE_INTERFACE_SORT_H
 #define COPPICE_INTERFACE_SORT_H
 #include "lookback.h"
@@ -37,6 +40,7 @@ const uint SORT_TILE_SCAN_GROUP = 256;
 struct SortHistogramArgs {
   UintBuffer keys;       // count * key_words
   UintBuffer histogram;  // key_words * 4 * SORT_DIGITS, zero at the start
+  UintBuffer count_at;
   uint count;
   uint key_words;
 };
@@ -53,7 +57,8 @@ struct SortPassArgs {
   UintBuffer digit_offsets;        // SORT_DIGITS, of this pass
   CoherentUintBuffer tile_status;  // tiles * SORT_DIGITS lookback words
   CoherentUintBuffer ticket;       // one word
-  BuildStateBuffer state;          // error word
+  BuildStateBuffer state;          // primitive_count and error word
+  UintBuffer count_at;
   uint count;
   uint key_words;
   uint pass;
@@ -68,6 +73,8 @@ struct SortScatterArgs {
   // tiles << digit_bits. sort_tile_counts leaves counts, sort_tile_scan where the first key of each tile and
   // digit goes, sort_scatter where one more would go.
   UintBuffer tile_digits;
+  BuildStateBuffer state;  // primitive_count and error word; written by sort_scatter
+  UintBuffer count_at;
   uint count;
   uint key_words;
   uint digit_word, digit_shift, digit_bits;
@@ -76,8 +83,11 @@ struct SortScatterArgs {
 
 struct SortTileScanArgs {
   UintBuffer tile_digits;  // tiles << digit_bits counts, replaced by exclusive sums over (digit, tile)
-  uint tile_count;
+  UintBuffer count_at;
+  uint count;
+  uint tile_keys;
   uint digit_bits;
+  uint padding;
 };
 
 // Specialization constants; what is an argument, too, has the same value there.

@@ -102,15 +102,18 @@ const uint ERROR_TREE_TOO_DEEP = 8u;
 const uint ERROR_TRACE_STEPS = 16u;
 const uint ERROR_SCAN_LOOKBACK = 32u;
 const uint ERROR_WIDE_TOO_DEEP = 64u;
+const uint ERROR_COUNT = 128u;
+const uint ERROR_BATCH_RANGE = 256u;
 
 // What the build knows of itself. Zero at the start of a build.
 struct BuildState {
   uvec3 box_min_complement;  // ~ordered(x), so that a maximum over zero-initialised words finds the minimum
-  uint active_count;         // triangles in the tree
+  uint active_count;         // primitives in the tree
   uvec3 box_max;             // ordered(x), see lib/ordered_float.glsl
   uint round_count;          // PLOC rounds it took
   uint error_word;
-  uint padding0, padding1, padding2;
+  uint primitive_count;  // asked for, active or not; more than the build was planned for are an error
+  uint padding0, padding1;
 };
 
 INTERFACE_BUFFER(BuildStateBuffer, BuildState, 16)

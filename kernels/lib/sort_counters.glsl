@@ -1,7 +1,7 @@
 // A tile of the radix sort that one subgroup takes, as many keys at once as it has invocations, with a counter a digit.
 // On CPU devices the counters stay in device memory, where gathers and scatters are single instructions.
 //
-// The including kernel includes lib/subgroup_match.glsl before.
+// The including kernel includes lib/subgroup_match.glsl and lib/device_count.glsl before.
 
 layout(constant_id = 0) const uint DIGIT_BITS = SORT_NARROW_BITS;  // args.digit_bits
 layout(constant_id = 1) const uint KEY_WORDS = 1u;                 // args.key_words
@@ -28,10 +28,10 @@ void store_counters() {
     args.tile_digits.at[first_counter() + digit] = digit_counters[digit];
 }
 
-// Places from x to y - 1.
+// Places from x to y - 1; none, and y = 0, behind the last key.
 uvec2 places_of_tile() {
-  uint first = gl_WorkGroupID.x * args.tile_keys;
-  return uvec2(first, min(first + args.tile_keys, args.count));
+  uint first = gl_WorkGroupID.x * args.tile_keys, count = counted(args.count_at, args.count);
+  return uvec2(first, first < count ? min(first + args.tile_keys, count) : 0u);
 }
 
 uint digit_of(uint key_word) { return (key_word >> args.digit_shift) & (DIGITS - 1u); }
@@ -44,10 +44,9 @@ void count_digit(uint digit) {
   sync();
 }
 
-void count_tile() {
+void count_tile(uvec2 places) {
   [[dont_unroll]] for (uint digit = lane(); digit < DIGITS; digit += LANES) set_counter(digit, 0u);
   sync();
-  uvec2 places = places_of_tile();
   [[dont_unroll]] for (uint first = places.x; first < places.y; first += 2u * LANES) {
     uvec2 at = first + lane() + uvec2(0u, LANES);
     uvec2 read = min(at, uvec2(places.y - 1u));

@@ -1,5 +1,7 @@
 // The digits of one tile of Onesweep: counted into rows of counters, each over consecutive keys. A row belongs to an
 // invocation, which takes its keys one by one, or to a subgroup, which takes a key an invocation at a time.
+//
+// The including kernel defines `key_count`.
 
 layout(constant_id = 3) const bool RANK_BY_MATCH = false;
 layout(constant_id = 4) const uint GROUP = SORT_RUNS_GROUP;
@@ -16,12 +18,12 @@ uint digit_of(uint key_index) {
   return bitfieldExtract(word, int((args.pass % SORT_PASSES_PER_WORD) * SORT_DIGIT_BITS), int(SORT_DIGIT_BITS));
 }
 
-// The keys of this invocation's row in a tile: from x to y - 1, as far as they are below args.count. All rows go through
+// The keys of this invocation's row in a tile: from x to y - 1, as far as they are below key_count. All rows go through
 // as many turns as the first, since some drivers take a barrier of a subgroup for one of the workgroup.
 uvec2 run_of(uint tile) {
   uint tile_first = tile * args.tile_keys, run = args.tile_keys / ROWS;
   uint first = tile_first + row() * run;
-  return uvec2(first, first + min(run, args.count - tile_first));
+  return uvec2(first, first + min(run, key_count - tile_first));
 }
 
 // Between accesses of a subgroup's invocations to its row.
@@ -50,7 +52,7 @@ void count_rows(uint tile) {
   uvec2 run = run_of(tile);
   [[dont_unroll]] for (uint first = run.x; first < run.y; first += STRIDE) {
     uint i = first + first_key;
-    take_place(i < args.count ? digit_of(i) : SORT_DIGITS);
+    take_place(i < key_count ? digit_of(i) : SORT_DIGITS);
   }
   barrier();
 }

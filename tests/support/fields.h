@@ -60,6 +60,10 @@ std::vector<std::uint32_t> field_offsets() {
   COPPICE_TIE(10, a, b, c, d, e, f, g, h, i, j)
   COPPICE_TIE(11, a, b, c, d, e, f, g, h, i, j, k)
   COPPICE_TIE(12, a, b, c, d, e, f, g, h, i, j, k, l)
+  COPPICE_TIE(13, a, b, c, d, e, f, g, h, i, j, k, l, m)
+  COPPICE_TIE(14, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
+  COPPICE_TIE(15, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o)
+  COPPICE_TIE(16, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p)
   return {};
 }
 #undef COPPICE_TIE

@@ -1,0 +1,5 @@
+// A count that only the device knows.
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+
+// At most `most`, which is the count where there is no address.
+uint counted(UintBuffer at, uint most) { return uint64_t(at) == 0ul ? most : min(at.at[0], most); }
