@@ -15,6 +15,7 @@ namespace coppice {
 namespace {
 
 constexpr std::uint32_t triangles = 20000;
+constexpr std::array<std::uint64_t, 4> no_addresses{};
 
 PlocRound round_of(uint clusters, uint merged_before, uint groups, uint pair_all = 0) {
   PlocRound round{};
@@ -37,7 +38,7 @@ RunCounts two_rounds() {
 std::map<std::string, std::uint64_t> bytes_of(const BuildOptions& options) {
   Layout layout;
   const BuildPlan plan = plan_build(layout, triangles, options);
-  Chain chain({0, 0, 0, 0});
+  Chain chain(no_addresses);
   append_build(chain, plan);
   std::map<std::string, std::uint64_t> bytes;
   for (const Step& step : chain.steps()) {
@@ -79,7 +80,7 @@ TEST(Traffic, OfWideNodes) {
   Layout layout;
   TreeSlots tree = plan_tree(layout, 64, 127);
   const WidePlan plan = plan_wide(layout, tree);
-  Chain chain({0});
+  Chain chain(no_addresses);
   append_wide(chain, tree, plan);
   std::map<std::string, std::uint64_t> bytes;
   for (const Step& step : chain.steps()) {
@@ -99,7 +100,7 @@ TEST(Traffic, OfATraceOfTwoSamples) {
   options.height = 25;
   options.samples = 2;
   const TracePlan plan = plan_trace(layout, tree, 1, options);
-  Chain chain({0});
+  Chain chain(no_addresses);
   append_trace(chain, tree, plan);
   append_bounce(chain, tree, plan, plan, 1000, 1);
   TraceCounters counters{};
@@ -123,7 +124,7 @@ TEST(Traffic, OfAScanWithAndWithoutLookback) {
     BuildOptions options;
     options.lookback = lookback;
     const ScanPlan plan = plan_scan(layout, 40000, options);  // three tiles of 16,384 words
-    Chain chain({0});
+    Chain chain(no_addresses);
     append_scan(chain, plan);
     std::map<std::string, std::uint64_t> bytes;
     for (const Step& step : chain.steps()) {
@@ -137,20 +138,18 @@ TEST(Traffic, OfAScanWithAndWithoutLookback) {
 TEST(Traffic, OfASortOfKeysAlone) {
   Layout layout;
   const BuildPlan plan = plan_sort(layout, triangles, {.morton_bits = 60}, false);
-  Chain chain({0});
+  Chain chain(no_addresses);
   append_sort(chain, plan);
   std::uint64_t bytes = 0;
   for (const Step& step : chain.steps()) {
-    if (step.stage == &stages::sort_pass) bytes += modelled_bytes(step, {}).value();
+    if (stage_of(step) == &stages::sort_pass) bytes += modelled_bytes(step, {}).value();
   }
   EXPECT_EQ(bytes, 8u * (320000 + 2 * 3 * 1024));
 }
 
 TEST(Traffic, EveryStageHasAModel) {
   for (const StageDeclaration* stage : all_stages()) {
-    Step step;
-    step.stage = stage;
-    EXPECT_TRUE(modelled_bytes(step, {})) << stage->name << ": none in host/pipeline/traffic.cpp";
+    EXPECT_TRUE(modelled_bytes(Dispatch{.stage = stage}, {})) << stage->name << ": none in host/pipeline/traffic.cpp";
   }
 }
 

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "coppice/build.h"
 #include "interface/ploc.h"
 #include "interface/types.h"
 #include "interface/wide.h"
@@ -13,9 +14,6 @@
 #include "stages/layout.h"
 
 namespace coppice {
-
-// What builds the tree over the sorted codes.
-enum class DeviceBuilder { ploc, hploc, lbvh };
 
 // A builder on the device as the commands know it.
 struct NamedDeviceBuilder {
@@ -102,6 +100,9 @@ LookbackConstants lookback_constants(const BuildOptions& options);
 
 // Rounds of PLOC that reduce `clusters` clusters to at most `target`, at worst; proved in docs/numerics.md.
 std::uint32_t ploc_rounds_bound(std::uint32_t clusters, std::uint32_t target);
+
+// The plan for a build of fewer primitives, in the same slots. Allocates nothing.
+BuildPlan with_count(const BuildPlan& plan, std::uint32_t primitive_count);
 
 // For a tree of `node_count` nodes that the host uploads. Throws LayoutError if a slot does not fit a block.
 TreeSlots plan_tree(Layout& layout, std::uint32_t triangle_count, std::uint64_t node_count);

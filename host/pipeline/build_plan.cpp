@@ -10,10 +10,14 @@ namespace coppice {
 
 namespace {
 
+void set_rounds(BuildPlan& plan) {
+  plan.rounds_bound = ploc_rounds_bound(plan.triangle_count, 1);
+  plan.recorded_rounds = ploc_rounds_bound(plan.triangle_count, PLOC_FINISH_CLUSTERS);
+}
+
 void add_ploc_slots(Layout& layout, BuildPlan& plan) {
   const std::uint32_t n = plan.triangle_count;
-  plan.rounds_bound = ploc_rounds_bound(n, 1);
-  plan.recorded_rounds = ploc_rounds_bound(n, PLOC_FINISH_CLUSTERS);
+  set_rounds(plan);
   plan.rounds = layout.add<PlocRound>("rounds", plan.rounds_bound + 1);
   plan.clusters[0] = layout.add<Node>("clusters_even", n);
   plan.clusters[1] = layout.add<Node>("clusters_odd", n);
@@ -54,19 +58,33 @@ SortPlan plan_passes(std::uint32_t key_count, const BuildOptions& options) {
   return sort;
 }
 
-void add_sort_slots(Layout& layout, BuildPlan& plan, bool has_values = true) {
+// Where the sort of a plan's first primitives begins.
+void set_sort(BuildPlan& plan) {
+  plan.sort = plan_passes(plan.triangle_count, plan.options);
+  plan.unsorted_keys = plan.keys[plan.sort.passes % 2];
+  plan.unsorted_values = plan.values[plan.sort.passes % 2];
+}
+
+// Large enough for a sort of fewer keys, too: of few the digits may be wider.
+std::uint64_t most_tile_digits(std::uint32_t key_count, const BuildOptions& options) {
+  const auto digits = [&](std::uint32_t count) {
+    const SortPlan sort = plan_passes(count, options);
+    return std::uint64_t{sort.tile_count} << sort.digit_bits;
+  };
+  return std::max(digits(key_count), digits(std::min(key_count, wide_digit_keys)));
+}
+
+// `keys` and `values`: who keeps what is sorted in the end.
+void add_sort_slots(Layout& layout, BuildPlan& plan, bool has_values, Memory keys, Memory values) {
   const std::uint32_t n = plan.triangle_count;
   const std::uint32_t key_words = plan.options.morton_bits / 30;
-  const SortPlan& sort = plan.sort = plan_passes(n, plan.options);
-  for (int i = 0; i < 2; ++i) {
-    plan.keys[i] = layout.add<uint>(i ? "keys_b" : "keys_a", std::uint64_t{n} * key_words,
-                                    i ? Memory::scratch : Memory::keys);
-    plan.values[i] = layout.add<uint>(i ? "values_b" : "values_a", has_values ? n : 0,
-                                      i ? Memory::scratch : Memory::values);
-  }
-  plan.unsorted_keys = plan.keys[sort.passes % 2];
-  plan.unsorted_values = plan.values[sort.passes % 2];
-  const std::uint64_t tile_digits = std::uint64_t{sort.tile_count} << sort.digit_bits;
+  plan.keys[0] = layout.add<uint>("keys_a", std::uint64_t{n} * key_words, keys);
+  plan.values[0] = layout.add<uint>("values_a", has_values ? n : 0, values);
+  plan.keys[1] = layout.add<uint>("keys_b", std::uint64_t{n} * key_words);
+  plan.values[1] = layout.add<uint>("values_b", has_values ? n : 0);
+  set_sort(plan);
+  const SortPlan& sort = plan.sort;
+  const std::uint64_t tile_digits = most_tile_digits(n, plan.options);
   if (sort.onesweep) {
     plan.histogram = layout.add<uint>("histogram", sort.passes * SORT_DIGITS);
     plan.sort_status = layout.add<uint>("sort_status", sort.passes * tile_digits);
@@ -83,7 +101,7 @@ BuildPlan plan_sort(Layout& layout, std::uint32_t key_count, const BuildOptions&
   plan.options = options;
   plan.triangle_count = key_count;
   plan.state = layout.add<BuildState>("state", 1);
-  add_sort_slots(layout, plan, has_values);
+  add_sort_slots(layout, plan, has_values, Memory::keys, Memory::values);
   return plan;
 }
 
@@ -122,12 +140,20 @@ BuildPlan plan_build(Layout& layout, std::uint32_t triangle_count, const BuildOp
 
   static_cast<TreeSlots&>(plan) = plan_tree(layout, n, n == 0 ? 0 : 2 * std::uint64_t{n} - 1);
   plan.boxes = layout.add<Aabb>("boxes", n);
-  add_sort_slots(layout, plan);
+  add_sort_slots(layout, plan, true, Memory::scratch, Memory::scratch);
   if (options.builder == DeviceBuilder::ploc)
     add_ploc_slots(layout, plan);
   else
     add_hploc_slots(layout, plan);
   return plan;
+}
+
+BuildPlan with_count(const BuildPlan& plan, std::uint32_t primitive_count) {
+  BuildPlan fewer = plan;
+  fewer.triangle_count = primitive_count;
+  set_sort(fewer);
+  if (fewer.options.builder == DeviceBuilder::ploc) set_rounds(fewer);
+  return fewer;
 }
 
 }  // namespace coppice

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "pipeline/variant_table.h"
+#include "pipeline/verdicts.h"
 
 namespace coppice {
 
@@ -19,6 +20,15 @@ Variants choose_variants(const Device& device, const std::string& choice, const 
 
 }  // namespace
 
+TraceOptions within_loop_turns(TraceOptions wanted, const DeviceProperties& device) {
+  if (const std::uint32_t limit = device.loop_turn_limit) {
+    // Two visits a turn stretch the turns that the driver's loops may take, for a fifth more time.
+    wanted.max_turns = limit - 1000;
+    wanted.visits_per_turn = 2;
+  }
+  return wanted;
+}
+
 CheckedDevice::CheckedDevice(const DeviceOptions& options, const DeviceChoices& choices, DeviceUse use,
                              Note note, const Note& waiting)
     : note_(std::move(note)), device_(options), walk_(choices.walk) {
@@ -32,7 +42,7 @@ CheckedDevice::CheckedDevice(const DeviceOptions& options, const DeviceChoices& 
   variants_ = choose_variants(device_, choices.variants, note_);
   use.build = build_options(use.build);
   for (TraceOptions& trace : use.traces) trace = picture_options(trace, use.triangle_count);
-  const bool works = check_device(device_, use);
+  const bool works = kept_check_device(device_, use);
   lookback_ = choices.lookback == LookbackChoice::automatic ? works : choices.lookback == LookbackChoice::on;
 }
 
@@ -43,12 +53,7 @@ BuildOptions CheckedDevice::build_options(BuildOptions wanted) const {
 }
 
 TraceOptions CheckedDevice::trace_options(TraceOptions wanted) const {
-  if (const std::uint32_t limit = properties().loop_turn_limit) {
-    // Two visits a turn stretch the turns that the driver's loops may take, for a fifth more time.
-    wanted.max_turns = limit - 1000;
-    wanted.visits_per_turn = 2;
-  }
-  return wanted;
+  return within_loop_turns(wanted, properties());
 }
 
 TraceOptions CheckedDevice::picture_options(TraceOptions wanted, std::uint32_t triangle_count) const {

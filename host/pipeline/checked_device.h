@@ -25,6 +25,9 @@ struct DeviceChoices {
   std::string slow_driver_remedy{};  // said of a driver of which a much faster one exists
 };
 
+// `wanted` with the turns that the device's loops may take.
+TraceOptions within_loop_turns(TraceOptions wanted, const DeviceProperties& device);
+
 // A device that has passed the self-check, and what it asks of plans: the variants of stages, lookback, the
 // turns that its loops may take, the walk through a tree.
 class CheckedDevice {

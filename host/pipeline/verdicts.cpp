@@ -38,13 +38,16 @@ std::string head_of(const DeviceProperties& device) {
 }
 
 // All that decides what a check does, in one word.
-std::string name_of(const DeviceUse& use) {
+std::string line_of(const DeviceUse& use) {
   std::ostringstream text;
   const BuildOptions& build = use.build;
   text << "build:" << use.builds << ':' << static_cast<int>(build.builder) << ':' << build.radius << ':'
        << build.morton_bits << ':' << build.lookback_turns << ':' << build.lookback_max_fallbacks << ':'
        << build.lookback_stress << ':' << to_string(build.variants);
-  for (const TraceOptions& trace : use.traces) text << ";trace:" << check_name_of(trace);
+  for (const TraceOptions& trace : use.traces) {
+    text << ";trace:" << name_of(trace.walk) << ':' << trace.max_turns << ':' << trace.visits_per_turn << ':'
+         << trace.stack_entries << ':' << trace.triangle_test << ':' << trace.box_test;
+  }
   return text.str();
 }
 
@@ -80,7 +83,7 @@ void write_verdicts(const fs::path& path, const std::string& head, const std::ma
 bool kept_check_device(Device& device, const DeviceUse& use) {
   const fs::path path = device.kept_file("verdicts");
   if (path.empty()) return check_device(device, use);
-  const std::string head = head_of(device.properties()), name = name_of(use);
+  const std::string head = head_of(device.properties()), name = line_of(use);
   std::map<std::string, bool> verdicts = read_verdicts(path, head);
   if (const auto kept = verdicts.find(name); kept != verdicts.end()) return kept->second;
   const bool lookback = check_device(device, use);

@@ -64,6 +64,12 @@ WidePlan plan_wide(Layout& layout, TreeSlots& tree, const BuildPlan* finished) {
   return plan;
 }
 
+WidePlan with_count(const WidePlan& plan, std::uint32_t leaves) {
+  WidePlan fewer = plan;
+  fewer.levels_bound = bound_levels(leaves);
+  return fewer;
+}
+
 void append_wide(Chain& chain, const TreeSlots& tree, const WidePlan& plan) {
   chain.clear(tree.wide_counts);
   chain.clear(plan.levels);

@@ -25,6 +25,9 @@ std::uint32_t wide_nodes_bound(std::uint32_t leaves);
 // does not fit a block.
 WidePlan plan_wide(Layout& layout, TreeSlots& tree, const BuildPlan* finished = nullptr);
 
+// The plan for a tree of fewer leaves, in the same slots. Allocates nothing.
+WidePlan with_count(const WidePlan& plan, std::uint32_t leaves);
+
 // From the binary tree its wide nodes, in depth-first order. A tree higher than WIDE_MAX_HEIGHT sets
 // ERROR_WIDE_TOO_DEEP; then, and without a tree, there are none.
 void append_wide(Chain& chain, const TreeSlots& tree, const WidePlan& plan);

@@ -49,8 +49,8 @@ struct TriangleInput {
 // Boxes of primitives that only the caller knows: CoppiceBox each. One that is not finite, or has box_min >
 // box_max, is not in the tree. Rays find their candidates by cmd_trace_candidates.
 struct BoxInput {
-  VkDeviceAddress boxes = 0;   // a multiple of 8
-  std::uint32_t stride = 24;   // bytes, at least 24, a multiple of 8
+  VkDeviceAddress boxes = 0;  // a multiple of 4
+  std::uint32_t stride = 24;  // bytes, at least 24, a multiple of 4
   ElementCount count{};
 };
 
@@ -84,8 +84,9 @@ class Builder {
   void cmd_build(VkCommandBuffer commands, const BoxInput& input, const MemoryRange& tree,
                  const MemoryRange& scratch, KernelQueries* queries = nullptr) const;
 
-  // Of a tree that has been, or will be, built into this memory.
-  TreeAddresses addresses(const MemoryRange& tree) const;
+  // Of a tree that has been, or will be, built into this memory. Throws ArgumentError as cmd_build.
+  TreeAddresses triangle_tree(const MemoryRange& tree) const;
+  TreeAddresses box_tree(const MemoryRange& tree) const;
 
  private:
   struct Plan;

@@ -1,0 +1,133 @@
+#include "coppice/build.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "library/state.h"
+#include "pipeline/primitives.h"
+#include "pipeline/wide.h"
+
+namespace coppice {
+
+// Trees over triangles and over boxes have different slots.
+struct Builder::Plan {
+  struct Primitives {
+    Layout layout = Layout::apart(~std::uint64_t{0});
+    BuildPlan build;
+    std::optional<WidePlan> wide;
+
+    std::uint64_t bytes(Memory memory) const {
+      return layout.block_bytes()[static_cast<std::size_t>(memory)];
+    }
+  };
+
+  Device& device;
+  Primitives triangles, boxes;
+
+  void cmd_build(VkCommandBuffer commands, const Primitives& plan, const ElementCount& count,
+                 const BuildInput& input, const MemoryRange& tree, const MemoryRange& scratch,
+                 KernelQueries* queries) const;
+
+  TreeAddresses addresses(const Primitives& plan, const MemoryRange& tree) const;
+};
+
+namespace {
+
+BuildOptions to_build_options(const TreeOptions& options) {
+  BuildOptions build;
+  build.builder = options.builder;
+  build.radius = options.radius;
+  build.morton_bits = options.morton_bits;
+  return build;
+}
+
+}  // namespace
+
+Builder::Builder(const Context& context, std::uint32_t max_primitives, const TreeOptions& options) {
+  with_argument_errors([&] { check_build(max_primitives, to_build_options(options)); });
+  const BuildOptions checked = context.state().checked(to_build_options(options));
+  plan_ = std::make_unique<Plan>(Plan{context.state().device(), {}, {}});
+  for (const PrimitiveKind kind : {PrimitiveKind::triangles, PrimitiveKind::boxes}) {
+    Plan::Primitives& plan = kind == PrimitiveKind::triangles ? plan_->triangles : plan_->boxes;
+    plan.build = plan_build(plan.layout, max_primitives, checked, kind);
+    // Rays of boxes find candidates in the binary tree only.
+    if (options.wide && kind == PrimitiveKind::triangles)
+      plan.wide = plan_wide(plan.layout, plan.build, &plan.build);
+  }
+  // Numbers at which other kernels run, or others of their variants.
+  for (const std::uint32_t count : {max_primitives, std::min(max_primitives, 1u << 18), std::min(max_primitives, 1u)}) {
+    prepare_chain(plan_->device, [&](Chain& chain) {
+      append_build(chain, with_count(plan_->triangles.build, count), {VertexTriangles{}});
+      append_build(chain, with_count(plan_->boxes.build, count), {GivenBoxes{}});
+      if (plan_->triangles.wide)
+        append_wide(chain, plan_->triangles.build, with_count(*plan_->triangles.wide, count));
+    });
+  }
+}
+
+Builder::~Builder() = default;
+Builder::Builder(Builder&&) noexcept = default;
+
+BuildSizes Builder::sizes() const {
+  const auto most = [&](Memory memory) {
+    return std::max(plan_->triangles.bytes(memory), plan_->boxes.bytes(memory));
+  };
+  // Keys and values of a build are scratch, too.
+  return {most(Memory::tree), most(Memory::scratch), 0};
+}
+
+TreeAddresses Builder::Plan::addresses(const Primitives& plan, const MemoryRange& tree) const {
+  const VkDeviceAddress base = checked_address(device, tree, plan.bytes(Memory::tree), "tree");
+  const auto at = [&](const auto& slot) { return slot.count > 0 ? base + slot.place.offset : 0; };
+  const TreeSlots& slots = plan.build;
+  return {at(slots.nodes), at(slots.state), at(slots.triangles), at(slots.wide_nodes), at(slots.wide_counts)};
+}
+
+void Builder::Plan::cmd_build(VkCommandBuffer commands, const Primitives& plan, const ElementCount& count,
+                              const BuildInput& input, const MemoryRange& tree, const MemoryRange& scratch,
+                              KernelQueries* queries) const {
+  check_count(count, plan.build.triangle_count, "count");
+  CallMemory memory(device);
+  memory.set(Memory::tree, tree, plan.bytes(Memory::tree), "tree");
+  memory.set(Memory::scratch, scratch, plan.bytes(Memory::scratch), "scratch");
+  CommandSink sink(device, commands, memory, queries);
+  Chain chain(memory.addresses(), &sink);
+  const BuildPlan build = with_count(plan.build, count.maximum);
+  append_build(chain, build, input);
+  if (plan.wide) append_wide(chain, build, with_count(*plan.wide, count.maximum));
+}
+
+void Builder::cmd_build(VkCommandBuffer commands, const TriangleInput& input, const MemoryRange& tree,
+                        const MemoryRange& scratch, KernelQueries* queries) const {
+  const bool empty = input.count.maximum == 0;
+  check_address(input.vertices, 4, empty, "vertices");
+  if (input.vertex_stride < 12 || input.vertex_stride % 4 != 0)
+    throw ArgumentError("vertex_stride: " + std::to_string(input.vertex_stride) +
+                        " is no multiple of 4 of at least 12");
+  if (input.index_type != VK_INDEX_TYPE_UINT16 && input.index_type != VK_INDEX_TYPE_UINT32)
+    throw ArgumentError("index_type: neither VK_INDEX_TYPE_UINT16 nor VK_INDEX_TYPE_UINT32");
+  const std::uint32_t index_bytes = input.index_type == VK_INDEX_TYPE_UINT16 ? 2 : 4;
+  check_address(input.indices, index_bytes, true, "indices");
+  check_address(input.transform, 4, true, "transform");
+  const VertexTriangles triangles{{input.vertices},     {input.indices},       {input.transform}, input.vertex_count,
+                                  input.vertex_stride, input.first_vertex, index_bytes};
+  plan_->cmd_build(commands, plan_->triangles, input.count, {triangles, {input.count.address}}, tree, scratch,
+                   queries);
+}
+
+void Builder::cmd_build(VkCommandBuffer commands, const BoxInput& input, const MemoryRange& tree,
+                        const MemoryRange& scratch, KernelQueries* queries) const {
+  check_address(input.boxes, 4, input.count.maximum == 0, "boxes");
+  if (input.stride < sizeof(CoppiceBox) || input.stride % 4 != 0)
+    throw ArgumentError("stride: " + std::to_string(input.stride) + " is no multiple of 4 of at least 24");
+  plan_->cmd_build(commands, plan_->boxes, input.count, {GivenBoxes{{input.boxes}, input.stride}, {input.count.address}},
+                   tree, scratch, queries);
+}
+
+TreeAddresses Builder::triangle_tree(const MemoryRange& tree) const {
+  return plan_->addresses(plan_->triangles, tree);
+}
+
+TreeAddresses Builder::box_tree(const MemoryRange& tree) const { return plan_->addresses(plan_->boxes, tree); }
+
+}  // namespace coppice

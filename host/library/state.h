@@ -1,0 +1,109 @@
+#pragma once
+
+#include <array>
+#include <mutex>
+
+#include "coppice/build.h"
+#include "gpu/command_writer.h"
+#include "pipeline/checked_device.h"
+#include "stages/chain.h"
+
+namespace coppice {
+
+// What a Context holds.
+class Context::State {
+ public:
+  State(const ContextOptions& options);
+  State(const AdoptedDevice& device, const ContextOptions& options);
+
+  Device& device() { return device_; }
+  const Variants& variants() const { return variants_; }
+
+  // The options of a build, after the device has been checked for it.
+  BuildOptions checked(BuildOptions wanted);
+  // The same for a trace of trees that any builder has made.
+  TraceOptions checked(TraceOptions wanted);
+
+ private:
+  bool check(const DeviceUse& use);
+
+  Device device_;
+  Variants variants_;
+  std::mutex check_mutex_;
+};
+
+// The memory of a call, one for each kind of a Layout, and what it is at.
+class CallMemory {
+ public:
+  explicit CallMemory(const Device& device) : device_(device) {}
+
+  // Throws ArgumentError, with `what`, for a null buffer, fewer than `bytes`, or an address that is no multiple of
+  // COPPICE_MEMORY_ALIGNMENT.
+  void set(Memory memory, const MemoryRange& range, std::uint64_t bytes, const char* what);
+  // Only read and written by kernels. Throws ArgumentError for null, unless there are no bytes, or misaligned.
+  void set(Memory memory, VkDeviceAddress address, std::uint64_t bytes, std::uint64_t alignment, const char* what);
+
+  std::span<const std::uint64_t> addresses() const { return addresses_; }
+  std::span<const BlockMemory> blocks() const { return blocks_; }
+
+ private:
+  const Device& device_;
+  std::array<std::uint64_t, memory_kinds> addresses_{};
+  std::array<BlockMemory, memory_kinds> blocks_{};
+};
+
+// The address of a range; throws ArgumentError as CallMemory::set.
+VkDeviceAddress checked_address(const Device& device, const MemoryRange& range, std::uint64_t bytes, const char* what);
+
+void check_count(const ElementCount& count, std::uint32_t maximum, const char* what);
+
+// Throws ArgumentError unless `address` is a multiple of `alignment` and, where it must be, not null.
+void check_address(VkDeviceAddress address, std::uint64_t alignment, bool may_be_null, const char* what);
+
+// Records the steps of a chain as they come, with the times of all, if asked.
+class CommandSink : public StepSink {
+ public:
+  CommandSink(Device& device, VkCommandBuffer commands, const CallMemory& memory, KernelQueries* queries);
+  ~CommandSink();
+  void take(const Step& step) override;
+
+ private:
+  void stamp(const char* name);
+
+  CommandWriter writer_;
+  KernelQueries* queries_;
+  const char* open_ = nullptr;  // what has been recorded since the last timestamp: clears
+};
+
+// Compiles the kernels of a chain.
+class PrepareSink : public StepSink {
+ public:
+  explicit PrepareSink(Device& device) : device_(device) {}
+  void take(const Step& step) override;
+
+ private:
+  Device& device_;
+};
+
+// Calls `append(Chain&)` for a chain of no memory, so that all of its kernels are compiled.
+template <class Append>
+void prepare_chain(Device& device, Append append) {
+  constexpr std::array<std::uint64_t, memory_kinds> nowhere{};
+  PrepareSink sink(device);
+  Chain chain(nowhere, &sink);
+  append(chain);
+}
+
+// What the pipeline throws of options and sizes, as an ArgumentError.
+template <class Action>
+auto with_argument_errors(Action action) {
+  try {
+    return action();
+  } catch (const std::invalid_argument& error) {
+    throw ArgumentError(error.what());
+  } catch (const LayoutError& error) {
+    throw ArgumentError(error.what());
+  }
+}
+
+}  // namespace coppice
