@@ -34,13 +34,15 @@ bool Context::State::check(const DeviceUse& use) {
 BuildOptions Context::State::checked(BuildOptions wanted) {
   wanted.variants = variants_;
   wanted.lookback = true;
-  wanted.lookback = check({.builds = true, .build = wanted});
+  wanted.lookback = check({.builds = true, .build = wanted, .traces = {}});
   return wanted;
 }
 
 TraceOptions Context::State::checked(TraceOptions wanted) {
   wanted = within_loop_turns(wanted, device_.properties());
-  check({.builds = false, .build = {.variants = variants_}, .traces = {wanted}});
+  DeviceUse use{.builds = false, .build = {}, .traces = {wanted}};
+  use.build.variants = variants_;
+  check(use);
   return wanted;
 }
 

@@ -4,7 +4,9 @@ namespace coppice {
 
 namespace {
 
-[[noreturn]] void fail(const char* what, const std::string& why) { throw ArgumentError(std::string(what) + why); }
+[[noreturn]] void fail(const char* what, const std::string& why) {
+  throw ArgumentError(std::string(what) + why);
+}
 
 }  // namespace
 
@@ -15,7 +17,8 @@ void check_address(VkDeviceAddress address, std::uint64_t alignment, bool may_be
 
 void check_count(const ElementCount& count, std::uint32_t maximum, const char* what) {
   if (count.maximum > maximum)
-    fail(what, ": " + std::to_string(count.maximum) + " are more than the maximum, " + std::to_string(maximum));
+    fail(what,
+         ": " + std::to_string(count.maximum) + " are more than the maximum, " + std::to_string(maximum));
   check_address(count.address, 4, true, what);
 }
 

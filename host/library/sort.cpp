@@ -1,5 +1,6 @@
 #include "coppice/sort.h"
 
+#include "interface/sort.h"
 #include "library/state.h"
 #include "pipeline/build.h"
 

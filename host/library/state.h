@@ -37,23 +37,36 @@ class CallMemory {
  public:
   explicit CallMemory(const Device& device) : device_(device) {}
 
-  // Throws ArgumentError, with `what`, for a null buffer, fewer than `bytes`, or an address that is no multiple of
-  // COPPICE_MEMORY_ALIGNMENT.
+  // Throws ArgumentError, with `what`, for a null buffer, fewer than `bytes`, or an address that is no
+  // multiple of COPPICE_MEMORY_ALIGNMENT.
   void set(Memory memory, const MemoryRange& range, std::uint64_t bytes, const char* what);
-  // Only read and written by kernels. Throws ArgumentError for null, unless there are no bytes, or misaligned.
-  void set(Memory memory, VkDeviceAddress address, std::uint64_t bytes, std::uint64_t alignment, const char* what);
+  // Only read and written by kernels. Throws ArgumentError for null, unless there are no bytes, or
+  // misaligned.
+  void set(Memory memory, VkDeviceAddress address, std::uint64_t bytes, std::uint64_t alignment,
+           const char* what);
+
+  // A slot of its own for what lies at an address; an empty one for null.
+  template <class T>
+  Slot<T> slot_at(VkDeviceAddress address, std::uint64_t count) {
+    if (address == 0) return {};
+    addresses_.at(used_) = address;
+    return {{used_++, 0}, count};
+  }
 
   std::span<const std::uint64_t> addresses() const { return addresses_; }
   std::span<const BlockMemory> blocks() const { return blocks_; }
 
  private:
   const Device& device_;
-  std::array<std::uint64_t, memory_kinds> addresses_{};
-  std::array<BlockMemory, memory_kinds> blocks_{};
+  static constexpr std::size_t most_blocks = memory_kinds + 16;
+  std::array<std::uint64_t, most_blocks> addresses_{};
+  std::array<BlockMemory, most_blocks> blocks_{};
+  std::uint32_t used_ = memory_kinds;
 };
 
 // The address of a range; throws ArgumentError as CallMemory::set.
-VkDeviceAddress checked_address(const Device& device, const MemoryRange& range, std::uint64_t bytes, const char* what);
+VkDeviceAddress checked_address(const Device& device, const MemoryRange& range, std::uint64_t bytes,
+                                const char* what);
 
 void check_count(const ElementCount& count, std::uint32_t maximum, const char* what);
 

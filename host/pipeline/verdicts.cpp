@@ -66,7 +66,8 @@ std::map<std::string, bool> read_verdicts(const fs::path& path, const std::strin
 }
 
 // Whole or not at all; a folder that cannot be written is left alone.
-void write_verdicts(const fs::path& path, const std::string& head, const std::map<std::string, bool>& verdicts) {
+void write_verdicts(const fs::path& path, const std::string& head,
+                    const std::map<std::string, bool>& verdicts) {
   std::error_code error;
   fs::create_directories(path.parent_path(), error);
   const fs::path partial = path.string() + '.' + std::to_string(getpid());

@@ -1,15 +1,15 @@
 // Trees over triangles or boxes, built by kernels that are recorded into the caller's command buffer.
 //
-// Ordering. A cmd_ call begins with a memory barrier from compute shaders and transfers (their writes) to compute
-// shaders, transfers and indirect commands, so calls may follow each other, share their scratch, and read what a
-// compute shader or a transfer wrote before. Inputs that come from elsewhere (the host after the submit, a graphics
-// stage) need a barrier of the caller's to compute-shader reads. No barrier ends a call: before anything but another
-// cmd_ call reads or overwrites what it touched, the caller puts one whose first scope is
-// VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT with
+// Ordering. A cmd_ call begins with a memory barrier from compute shaders and transfers (their writes) to
+// compute shaders, transfers and indirect commands, so calls may follow each other, share their scratch, and
+// read what a compute shader or a transfer wrote before. Inputs that come from elsewhere (the host after the
+// submit, a graphics stage) need a barrier of the caller's to compute-shader reads. No barrier ends a call:
+// before anything but another cmd_ call reads or overwrites what it touched, the caller puts one whose first
+// scope is VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT with
 // VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT.
 //
-// Nothing is allocated while recording, nothing is submitted, and no state but the bound compute pipeline and push
-// constants of the command buffer changes.
+// Nothing is allocated while recording, nothing is submitted, and no state but the bound compute pipeline and
+// push constants of the command buffer changes.
 #pragma once
 
 #include "coppice/context.h"
@@ -32,18 +32,18 @@ struct BuildSizes {
   VkDeviceSize update_bytes = 0;   // scratch of a refit; there is none yet: 0
 };
 
-// Indexed or plain triangles. They are copied into the tree's memory, with denormal coordinates as zero: the tree
-// does not need the input any more. A triangle with a corner that is not finite, or an index beyond vertex_count,
-// is not in the tree; the others keep their indices.
+// Indexed or plain triangles. They are copied into the tree's memory, with denormal coordinates as zero: the
+// tree does not need the input any more. A triangle with a corner that is not finite, or an index beyond
+// vertex_count, is not in the tree; the others keep their indices.
 struct TriangleInput {
-  VkDeviceAddress vertices = 0;       // three floats each; a multiple of 4
-  std::uint32_t vertex_stride = 12;   // bytes, at least 12, a multiple of 4
-  std::uint32_t vertex_count = 0;     // that may be read
-  VkDeviceAddress indices = 0;        // three a triangle; a multiple of their size; null: 0, 1, 2, ...
+  VkDeviceAddress vertices = 0;      // three floats each; a multiple of 4
+  std::uint32_t vertex_stride = 12;  // bytes, at least 12, a multiple of 4
+  std::uint32_t vertex_count = 0;    // that may be read
+  VkDeviceAddress indices = 0;       // three a triangle; a multiple of their size; null: 0, 1, 2, ...
   VkIndexType index_type = VK_INDEX_TYPE_UINT32;  // or UINT16
-  std::uint32_t first_vertex = 0;     // added to each index
-  VkDeviceAddress transform = 0;      // 12 floats, three rows of a 3 x 4 matrix; a multiple of 4; null: none
-  ElementCount count{};               // triangles
+  std::uint32_t first_vertex = 0;                 // added to each index
+  VkDeviceAddress transform = 0;  // 12 floats, three rows of a 3 x 4 matrix; a multiple of 4; null: none
+  ElementCount count{};           // triangles
 };
 
 // Boxes of primitives that only the caller knows: CoppiceBox each. One that is not finite, or has box_min >
@@ -56,16 +56,16 @@ struct BoxInput {
 
 // Where a tree lies, for traces and for the caller's own shaders.
 struct TreeAddresses {
-  VkDeviceAddress nodes = 0;      // CoppiceNode; root at 0
-  VkDeviceAddress state = 0;      // CoppiceTreeState: the flag word, and whether there is a tree
-  VkDeviceAddress triangles = 0;  // CoppiceTriangle, by their indices; null for boxes
+  VkDeviceAddress nodes = 0;        // CoppiceNode; root at 0
+  VkDeviceAddress state = 0;        // CoppiceTreeState: the flag word, and whether there is a tree
+  VkDeviceAddress triangles = 0;    // CoppiceTriangle, by their indices; null for boxes
   VkDeviceAddress wide_nodes = 0;   // CoppiceWideNode; root at 0; null without them
   VkDeviceAddress wide_counts = 0;  // their number is the first word; null without them
 };
 
-// Builds of up to so many primitives, any number of them; one can be used by several threads at once. The same
-// input and options give the same bits on every device.
-class Builder {
+// Builds of up to so many primitives, any number of them; one can be used by several threads at once. The
+// same input and options give the same bits on every device.
+class COPPICE_API Builder {
  public:
   // Compiles the kernels that are not yet compiled, and lets the device be checked. Throws ArgumentError for
   // options out of range or more primitives than a build takes (67,107,840), DeviceError for a device that
@@ -76,9 +76,9 @@ class Builder {
 
   BuildSizes sizes() const;
 
-  // The tree's memory and the scratch are overwritten. Throw ArgumentError, and record nothing, where the count
-  // is larger than max_primitives, or memory is too small or misaligned. `scratch` may be shared with other
-  // calls of the same command buffer.
+  // The tree's memory and the scratch are overwritten. Throw ArgumentError, and record nothing, where the
+  // count is larger than max_primitives, or memory is too small or misaligned. `scratch` may be shared with
+  // other calls of the same command buffer.
   void cmd_build(VkCommandBuffer commands, const TriangleInput& input, const MemoryRange& tree,
                  const MemoryRange& scratch, KernelQueries* queries = nullptr) const;
   void cmd_build(VkCommandBuffer commands, const BoxInput& input, const MemoryRange& tree,

@@ -17,24 +17,24 @@
 namespace coppice {
 
 // Whatever the library throws, but for std::bad_alloc, in one line.
-struct Error : std::runtime_error {
+struct COPPICE_API Error : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 // What goes wrong with a device: there is none, it lacks something (which is named), it has no memory left,
 // or it computes wrong.
-struct DeviceError : Error {
+struct COPPICE_API DeviceError : Error {
   using Error::Error;
 };
 
 // The device did not finish in time. What it works on is left alone for good: nothing of it is freed.
-struct DeviceHung : DeviceError {
+struct COPPICE_API DeviceHung : DeviceError {
   using DeviceError::DeviceError;
 };
 
 // A call whose arguments cannot be: memory too small or misaligned, a count beyond its maximum, an option out
 // of its range. Nothing has been recorded.
-struct ArgumentError : Error {
+struct COPPICE_API ArgumentError : Error {
   using Error::Error;
 };
 
@@ -68,7 +68,7 @@ struct AdoptedDevice {
 
 // What a device must have, to be asked and enabled before it is made. No extensions are needed beside
 // Vulkan 1.3.
-struct RequiredFeatures {
+struct COPPICE_API RequiredFeatures {
   RequiredFeatures();  // as Coppice needs them, and no others
   RequiredFeatures(const RequiredFeatures&) = delete;
   RequiredFeatures& operator=(const RequiredFeatures&) = delete;
@@ -79,11 +79,11 @@ struct RequiredFeatures {
 };
 
 // Why a physical device cannot be used, by the feature, limit or version that it lacks; empty if it can.
-std::string why_unsuitable(VkInstance instance, VkPhysicalDevice physical_device,
-                           PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr);
+COPPICE_API std::string why_unsuitable(VkInstance instance, VkPhysicalDevice physical_device,
+                                       PFN_vkGetInstanceProcAddr get_instance_proc_addr = nullptr);
 
 // What of them is not enabled in a chain of features, by name; empty if nothing is missing.
-std::string missing_feature(const VkPhysicalDeviceFeatures2& enabled);
+COPPICE_API std::string missing_feature(const VkPhysicalDeviceFeatures2& enabled);
 
 // What is known of the device.
 struct Capabilities {
@@ -96,7 +96,7 @@ struct Capabilities {
 
 // Everything that builders, sorters, scanners and tracers share. Any number of contexts and threads may
 // record at once; objects made of a context must not outlive it.
-class Context {
+class COPPICE_API Context {
  public:
   // A device of its own. Throws DeviceError if there is none or it cannot be used.
   explicit Context(const ContextOptions& options = {});

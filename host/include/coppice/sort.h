@@ -1,4 +1,5 @@
-// A stable radix sort that is recorded into the caller's command buffer. Ordering and memory: coppice/build.h.
+// A stable radix sort that is recorded into the caller's command buffer. Ordering and memory:
+// coppice/build.h.
 #pragma once
 
 #include "coppice/context.h"
@@ -10,7 +11,7 @@ struct SortOptions {
   bool values = true;           // false: keys alone
 };
 
-class Sorter {
+class COPPICE_API Sorter {
  public:
   // Throws ArgumentError for options out of range or more than 67,107,840 keys, DeviceError for a device that
   // computes wrong.
@@ -20,13 +21,15 @@ class Sorter {
 
   VkDeviceSize scratch_bytes() const;
 
-  // Sorts `count` keys, and values with them, in place: at `keys` key_words words each, at `values` one (null for
-  // keys alone); both addresses are multiples of 16, and max_keys of them may be written. What lies behind the
-  // count stays as it is. Throws ArgumentError, and records nothing, as Builder::cmd_build.
+  // Sorts `count` keys, and values with them, in place: at `keys` key_words words each, at `values` one (null
+  // for keys alone); both addresses are multiples of 16, and max_keys of them may be written. What lies
+  // behind the count stays as it is. Throws ArgumentError, and records nothing, as Builder::cmd_build.
   void cmd_sort(VkCommandBuffer commands, VkDeviceAddress keys, VkDeviceAddress values,
-                const ElementCount& count, const MemoryRange& scratch, KernelQueries* queries = nullptr) const;
+                const ElementCount& count, const MemoryRange& scratch,
+                KernelQueries* queries = nullptr) const;
 
-  // Where in the scratch a sort leaves a CoppiceTreeState, of which error_word and primitive_count are its own.
+  // Where in the scratch a sort leaves a CoppiceTreeState, of which error_word and primitive_count are its
+  // own.
   VkDeviceAddress state_address(const MemoryRange& scratch) const;
 
  private:

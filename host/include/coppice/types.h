@@ -9,6 +9,13 @@
 #define COPPICE_VERSION_MINOR 2
 #define COPPICE_VERSION_PATCH 0
 
+/* Before what a shared library shows. */
+#ifdef COPPICE_SHARED
+#define COPPICE_API __attribute__((visibility("default")))
+#else
+#define COPPICE_API
+#endif
+
 /* Of the trees, rays and hits below. */
 #define COPPICE_FORMAT_VERSION 1
 
@@ -61,6 +68,15 @@ typedef struct CoppiceHit {
   uint32_t primitive; /* COPPICE_NO_PRIMITIVE for a miss */
   float u, v;         /* barycentric coordinates of corners b and c */
 } CoppiceHit;
+
+/* A primitive whose box a ray meets. */
+typedef struct CoppiceCandidate {
+  uint32_t primitive;
+  float t_enter; /* where the ray enters the box; at least t_min */
+} CoppiceCandidate;
+
+/* In a word of flags of a primitive, beside its mask in bits 0 to 7: it never ends a ray of cmd_trace_any. */
+#define COPPICE_PRIMITIVE_NOT_OPAQUE 0x100u
 
 /* What a build says of itself, at TreeAddresses::state. */
 typedef struct CoppiceTreeState {
