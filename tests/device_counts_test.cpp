@@ -180,7 +180,7 @@ class DeviceCountsBuild : public DeviceCounts {
     run.start(asked);
     run.executor->upload(plan.triangles, triangles);
     run.fill(plan.nodes);
-    run.expect_same_bits([&](Chain& chain) { append_build(chain, plan, {chain.at(run.count)}); });
+    run.expect_same_bits([&](Chain& chain) { append_build(chain, plan, {.count_at = chain.at(run.count)}); });
     if (HasFatalFailure()) return;
     const BuildState state = run.read(plan.state)[0];
     expect_state(state, asked, most);

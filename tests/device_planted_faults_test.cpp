@@ -34,7 +34,7 @@ constexpr Frame frames[] = {
     {1000, DeviceBuilder::hploc, true, Walk::wide_single},
     {300, DeviceBuilder::ploc, true, Walk::brute_force},
     {SORT_SCAN_TILE + 100, DeviceBuilder::ploc, false, Walk::binary}};  // one tile alone sorts without a scan
-constexpr std::size_t scan_and_copy = std::size(frames), chain_count = scan_and_copy + 1;
+constexpr std::size_t scan_and_copy = std::size(frames), inputs = scan_and_copy + 1, chain_count = inputs + 1;
 
 using Spoil = std::function<void(std::vector<Step>&, const LockstepExecutor&)>;
 
@@ -92,7 +92,30 @@ Found run_scan_and_copy(Device& device, const Spoil& spoil) {
   return {std::move(difference), {executor.nearly().begin(), executor.nearly().end()}};
 }
 
+// Vertices to triangles, and boxes as they are given.
+Found run_inputs(Device& device, const Spoil& spoil) {
+  constexpr std::uint32_t count = 300;
+  const std::vector<Triangle> triangles = random_triangles(count, 1);
+  const std::vector<Aabb> boxes(count, Aabb{vec3(1), vec3(2)});
+  Layout layout(device.properties().max_block_bytes);
+  const auto vertices = layout.add<Triangle>("vertices", count);
+  const auto given = layout.add<Aabb>("given", count);
+  const PrimitiveSlots gathered = plan_primitives(layout, count, PrimitiveKind::triangles);
+  const PrimitiveSlots primitives = plan_primitives(layout, count, PrimitiveKind::boxes);
+  LockstepExecutor executor(device, layout);
+  executor.upload(vertices, std::span<const Triangle>(triangles));
+  executor.upload(given, std::span<const Aabb>(boxes));
+  auto difference = executor.run([&](Chain& chain) {
+    VertexTriangles input{.vertices = {chain.at(vertices).value}, .vertex_count = 3 * count};
+    append_primitives(chain, gathered, {input, {}});
+    append_primitives(chain, primitives, {GivenBoxes{{chain.at(given).value}}, {}});
+    spoil(chain.steps(), executor);
+  });
+  return {std::move(difference), {executor.nearly().begin(), executor.nearly().end()}};
+}
+
 Found run_chain(Device& device, std::size_t chain, const Spoil& spoil) {
+  if (chain == inputs) return run_inputs(device, spoil);
   return chain == scan_and_copy ? run_scan_and_copy(device, spoil) : run_frame(device, frames[chain], spoil);
 }
 

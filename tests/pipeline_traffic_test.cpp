@@ -118,6 +118,46 @@ TEST(Traffic, OfATraceOfTwoSamples) {
   EXPECT_EQ(bytes["bounce_rays"], 1000u * 96 + 250 * 36);
 }
 
+// Where the device has the number, what it says counts, and at most what was planned for.
+TEST(Traffic, OfACountOnTheDevice) {
+  for (const std::uint32_t variant : {SORT_SCAN_8, SORT_ONESWEEP_RUNS}) {
+    BuildOptions options{.radius = 16, .morton_bits = 30};
+    options.variants.sort = variant;
+    const auto moved = [&](std::uint32_t planned, bool counted, std::uint32_t there) {
+      Layout layout;
+      const BuildPlan plan = plan_build(layout, planned, options);
+      Chain chain({4096, 4096, 4096, 4096});
+      append_build(chain, plan, {.count_at = {counted ? 4096u : 0u}});
+      RunCounts counts = two_rounds();
+      counts.primitive_count = there;
+      std::uint64_t bytes = 0;
+      for (const Step& step : chain.steps()) {
+        if (step.stage) bytes += modelled_bytes(step, counts).value();
+      }
+      return bytes;
+    };
+    EXPECT_EQ(moved(100000, true, 20000), moved(20000, false, 0));
+    EXPECT_EQ(moved(100000, true, 200000), moved(100000, false, 0));
+    EXPECT_LT(moved(100000, true, 20000), moved(100000, true, 40000));
+  }
+}
+
+TEST(Traffic, OfVerticesAndBoxes) {
+  Layout layout;
+  const PrimitiveSlots gathered = plan_primitives(layout, 1000, PrimitiveKind::triangles);
+  const PrimitiveSlots given = plan_primitives(layout, 1000, PrimitiveKind::boxes);
+  Chain chain({0});
+  append_primitives(chain, gathered, {VertexTriangles{.indices = {4096}, .index_bytes = 2}, {}});
+  append_primitives(chain, given, {GivenBoxes{}, {}});
+  std::map<std::string, std::uint64_t> bytes;
+  for (const Step& step : chain.steps()) {
+    if (step.stage) bytes[step.stage->name] += modelled_bytes(step, {}).value();
+  }
+  EXPECT_EQ(bytes["gather_triangles"], 1000u * (36 + 6 + 36));
+  EXPECT_EQ(bytes["box_bounds"], 1000u * 48);
+  EXPECT_EQ(bytes["primitive_bounds"], 1000u * 60);
+}
+
 TEST(Traffic, OfAScanWithAndWithoutLookback) {
   for (const bool lookback : {true, false}) {
     Layout layout;

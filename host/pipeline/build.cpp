@@ -12,21 +12,10 @@ namespace coppice {
 namespace {
 
 // max_triangles is what one dispatch of the smallest tile reaches.
-static_assert(std::min({PRIMITIVE_BOUNDS_TILE, MORTON_TILE, SORT_HISTOGRAM_TILE, SORT_RUNS_TILE,
-                        SORT_MATCH_TILE, SORT_SCAN_TILE, PLOC_LEAVES_TILE}) >= PLOC_MERGE_TILE);
+static_assert(std::min({GATHER_TRIANGLES_TILE, PRIMITIVE_BOUNDS_TILE, MORTON_TILE, SORT_HISTOGRAM_TILE,
+                        SORT_RUNS_TILE, SORT_MATCH_TILE, SORT_SCAN_TILE, PLOC_LEAVES_TILE}) >=
+              PLOC_MERGE_TILE);
 static_assert(PLOC_FINISH_CLUSTERS <= PLOC_MERGE_TILE, "the finish takes its clusters for one tile");
-
-// A count on the device may be larger than a plan for none takes: then, too, one workgroup says so.
-std::uint32_t noting_groups(std::uint32_t groups, UintBuffer count_at) {
-  return std::max(groups, count_at.value ? 1u : 0u);
-}
-
-void append_bounds(Chain& chain, const BuildPlan& plan, UintBuffer count_at) {
-  chain.run(stages::primitive_bounds,
-            {chain.at(plan.triangles), chain.at(plan.boxes), chain.at(plan.state), count_at,
-             plan.triangle_count, 0},
-            {noting_groups(divide_up(plan.triangle_count, PRIMITIVE_BOUNDS_TILE), count_at), 1, 1});
-}
 
 void append_morton_codes(Chain& chain, const BuildPlan& plan, UintBuffer count_at) {
   const std::uint32_t n = plan.triangle_count;
@@ -66,7 +55,7 @@ void append_onesweep(Chain& chain, const BuildPlan& plan, UintBuffer count_at) {
                chain.at(plan.sort_status, std::uint64_t{pass} * sort.tile_count * SORT_DIGITS),
                chain.at(plan.sort_tickets, pass), chain.at(plan.state), count_at, n, key_words, pass,
                sort.tile_keys},
-              {noting_groups(sort.tile_count, count_at), 1, 1}, constants);
+              counted_groups(n, sort.tile_keys, count_at), constants);
   }
 }
 
@@ -94,7 +83,7 @@ void append_scanned_sort(Chain& chain, const BuildPlan& plan, UintBuffer count_a
       chain.run(stages::sort_tile_scan, {args.tile_digits, count_at, args.count, sort.tile_keys, bits, 0},
                 {1, 1, 1}, {bits});
     }
-    chain.run(stages::sort_scatter, args, {noting_groups(sort.tile_count, count_at), 1, 1},
+    chain.run(stages::sort_scatter, args, counted_groups(args.count, sort.tile_keys, count_at),
               {{bits, key_words}, has_values(plan), one_tile});
   }
 }
@@ -189,7 +178,7 @@ void append_build(Chain& chain, const BuildPlan& plan, const BuildInput& input) 
   chain.clear(plan.round_status[0]);
   chain.clear(plan.arrivals);
   clear_sort(chain, plan);
-  append_bounds(chain, plan, input.count_at);
+  append_primitives(chain, {plan.triangle_count, plan.triangles, plan.boxes, plan.state}, input);
   append_morton_codes(chain, plan, input.count_at);
   append_sort_passes(chain, plan, input.count_at);
   if (plan.options.builder == DeviceBuilder::ploc)

@@ -9,6 +9,7 @@
 #include "interface/ploc.h"
 #include "interface/types.h"
 #include "interface/wide.h"
+#include "pipeline/primitives.h"
 #include "pipeline/variants.h"
 #include "stages/chain.h"
 #include "stages/layout.h"
@@ -40,13 +41,6 @@ struct BuildOptions {
   Variants variants{};
 };
 
-// What a build reads.
-struct BuildInput {
-  // Null: as many primitives as the build was planned for. Or where the device has their number, of which at
-  // most those count; more are ERROR_COUNT, and BuildState::primitive_count says how many.
-  UintBuffer count_at;
-};
-
 // How the sort of a plan goes: a pure function of the number of keys and the options.
 struct SortPlan {
   bool onesweep = false;  // else counting, scanning and scattering
@@ -60,9 +54,9 @@ struct SortPlan {
 // A scene's triangles and the tree over them, whoever builds it.
 struct TreeSlots {
   std::uint32_t triangle_count = 0;
-  Slot<Triangle> triangles;
-  Slot<Node> nodes;        // root at 0; of a build on the device the first 2 active - 1
-  Slot<BuildState> state;  // active_count is 0 without a tree
+  Slot<Triangle> triangles;  // none of a build over boxes
+  Slot<Node> nodes;          // root at 0; of a build on the device the first 2 active - 1
+  Slot<BuildState> state;    // active_count is 0 without a tree
 
   // The same tree with wide nodes in depth-first order, root at 0. Empty slots where none is planned.
   Slot<WideNode> wide_nodes;     // wide_counts[0].node_count of them
@@ -107,9 +101,12 @@ BuildPlan with_count(const BuildPlan& plan, std::uint32_t primitive_count);
 // For a tree of `node_count` nodes that the host uploads. Throws LayoutError if a slot does not fit a block.
 TreeSlots plan_tree(Layout& layout, std::uint32_t triangle_count, std::uint64_t node_count);
 
-// Throws LayoutError if a slot does not fit a block, std::invalid_argument for options out of range or
-// more than max_triangles.
-BuildPlan plan_build(Layout& layout, std::uint32_t triangle_count, const BuildOptions& options);
+// Throws std::invalid_argument for options out of range or more than max_triangles.
+void check_build(std::uint32_t primitive_count, const BuildOptions& options);
+
+// Throws LayoutError if a slot does not fit a block, and what check_build throws.
+BuildPlan plan_build(Layout& layout, std::uint32_t primitive_count, const BuildOptions& options,
+                     PrimitiveKind kind = PrimitiveKind::triangles);
 
 // Only the sort's slots of a build of `key_count` pairs, or of keys alone, and its state. Throws LayoutError
 // if one does not fit a block.
@@ -120,7 +117,8 @@ BuildPlan plan_sort(Layout& layout, std::uint32_t key_count, const BuildOptions&
 // values[0]. `count_at` as in BuildInput.
 void append_sort(Chain& chain, const BuildPlan& plan, UintBuffer count_at = {});
 
-// Triangles to tree: bounds, Morton codes, sort, and the builder of the options.
+// Primitives to tree: what brings them into the plan's slots, bounds, Morton codes, sort, and the builder of
+// the options. Throws std::invalid_argument for what append_primitives does not take.
 void append_build(Chain& chain, const BuildPlan& plan, const BuildInput& input = {});
 
 }  // namespace coppice

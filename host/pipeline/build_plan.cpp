@@ -121,7 +121,7 @@ TreeSlots plan_tree(Layout& layout, std::uint32_t triangle_count, std::uint64_t 
   return tree;
 }
 
-BuildPlan plan_build(Layout& layout, std::uint32_t triangle_count, const BuildOptions& options) {
+void check_build(std::uint32_t primitive_count, const BuildOptions& options) {
   if (options.radius < 1 || options.radius > PLOC_MAX_RADIUS) {
     throw std::invalid_argument("radius " + std::to_string(options.radius) + " is not in 1 to " +
                                 std::to_string(PLOC_MAX_RADIUS));
@@ -130,15 +130,22 @@ BuildPlan plan_build(Layout& layout, std::uint32_t triangle_count, const BuildOp
     throw std::invalid_argument("Morton codes have 30 or 60 bits, not " +
                                 std::to_string(options.morton_bits));
   }
-  if (triangle_count > max_triangles) {
-    throw std::invalid_argument(std::to_string(triangle_count) + " triangles are more than a build takes, " +
+  if (primitive_count > max_triangles) {
+    throw std::invalid_argument(std::to_string(primitive_count) + " triangles are more than a build takes, " +
                                 std::to_string(max_triangles));
   }
+}
+
+BuildPlan plan_build(Layout& layout, std::uint32_t primitive_count, const BuildOptions& options,
+                     PrimitiveKind kind) {
+  check_build(primitive_count, options);
   BuildPlan plan;
-  const std::uint32_t n = triangle_count;
+  const std::uint32_t n = primitive_count;
   plan.options = options;
 
-  static_cast<TreeSlots&>(plan) = plan_tree(layout, n, n == 0 ? 0 : 2 * std::uint64_t{n} - 1);
+  const std::uint32_t triangle_count = kind == PrimitiveKind::triangles ? n : 0;
+  static_cast<TreeSlots&>(plan) = plan_tree(layout, triangle_count, n == 0 ? 0 : 2 * std::uint64_t{n} - 1);
+  plan.triangle_count = n;
   plan.boxes = layout.add<Aabb>("boxes", n);
   add_sort_slots(layout, plan, true, Memory::scratch, Memory::scratch);
   if (options.builder == DeviceBuilder::ploc)

@@ -22,7 +22,8 @@ std::string describe_error_word(std::uint32_t error_word) {
        "trace_closest, trace_wide or trace_wide_single: a ray needs more steps than this driver's loops may "
        "take"},
       {ERROR_COUNT,
-       "primitive_bounds, sort_pass, sort_scatter or prefix_scan: the count on the device is larger than "
+       "primitive_bounds, box_bounds, sort_pass, sort_scatter or prefix_scan: the count on the "
+       "device is larger than "
        "what was "
        "planned for"},
       {ERROR_WIDE_TOO_DEEP, "wide_root: the tree is deeper than the conversion to wide nodes takes"},

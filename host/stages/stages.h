@@ -2,6 +2,7 @@
 
 #include "interface/bounds.h"
 #include "interface/copy.h"
+#include "interface/gather.h"
 #include "interface/hploc.h"
 #include "interface/morton.h"
 #include "interface/ploc.h"
@@ -15,7 +16,9 @@
 // its arguments come its kernel's specialization constants, and what of its result only nearly equals the
 // twin's on a GPU, see below.
 #define COPPICE_STAGES(STAGE)                                                          \
+  STAGE(gather_triangles, GatherTrianglesArgs, NoConstants, exactly)                   \
   STAGE(primitive_bounds, PrimitiveBoundsArgs, NoConstants, exactly)                   \
+  STAGE(box_bounds, BoxBoundsArgs, NoConstants, exactly)                               \
   STAGE(morton_codes, MortonCodesArgs, NoConstants, exactly)                           \
   STAGE(sort_histogram, SortHistogramArgs, NoConstants, exactly)                       \
   STAGE(sort_digit_scan, SortDigitScanArgs, NoConstants, exactly)                      \

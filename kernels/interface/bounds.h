@@ -16,5 +16,15 @@ struct PrimitiveBoundsArgs {
   uint padding;
 };
 
+// Of boxes that only the caller knows what they hold, in workgroups as those of primitive_bounds.
+struct BoxBoundsArgs {
+  UintBuffer given;  // box_count: an Aabb at the start of each `stride` bytes, a multiple of 4
+  AabbBuffer boxes;  // box_count; an inactive one has box_min > box_max
+  BuildStateBuffer state;
+  UintBuffer count_at;  // null, or how many of them count
+  uint box_count;
+  uint stride;
+};
+
 INTERFACE_END
 #endif
