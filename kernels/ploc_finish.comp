@@ -23,6 +23,9 @@ void store_cluster(uint place, Node cluster) { clusters[place] = words_of(cluste
 void keep_partner(uint i, uint partner) { partners[i] = partner; }
 uint partner_of(uint i) { return partners[i]; }
 void sync_clusters() { sync(); }
+Normalisation tree_normalisation() { return scene_normalisation(args.state.at[0]); }
+uint tree_active_count() { return args.state.at[0].active_count; }
+void store_tree_node(uint i, Node node) { store_node(args.nodes, i, node); }
 
 uint first_finish_round() {
   uint round = 0u;

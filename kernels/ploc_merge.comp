@@ -27,6 +27,9 @@ void store_cluster(uint place, Node cluster) { store_node(args.clusters_out, pla
 void keep_partner(uint i, uint partner) { args.partners.at[i] = partner; }
 uint partner_of(uint i) { return args.partners.at[i]; }
 void sync_clusters() {}
+Normalisation tree_normalisation() { return scene_normalisation(args.state.at[0]); }
+uint tree_active_count() { return args.state.at[0].active_count; }
+void store_tree_node(uint i, Node node) { store_node(args.nodes, i, node); }
 
 void publish_sums(uvec2 sums) {
   if (gl_LocalInvocationIndex < PLOC_MERGE_SUMS) tile_sums[gl_LocalInvocationIndex] = sums[gl_LocalInvocationIndex];

@@ -14,6 +14,7 @@ layout(push_constant, scalar) uniform Push { PlocMergeArgs args; };
 
 Node load_cluster(uint i) { return load_node(args.clusters_in, i); }
 void keep_partner(uint i, uint partner) { args.partners.at[i] = partner; }
+Normalisation tree_normalisation() { return scene_normalisation(args.state.at[0]); }
 
 void main() {
   uvec2 total = find_partners(gl_WorkGroupID.x, args.rounds.at[args.round], true);

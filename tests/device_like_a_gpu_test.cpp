@@ -6,6 +6,7 @@
 #include "analysis/compare.h"
 #include "analysis/tree_hash.h"
 #include "apps/frame.h"
+#include "pipeline/batch.h"
 #include "pipeline/ray_tracing.h"
 #include "scene/hard_cases.h"
 #include "stages/gpu_executor.h"
@@ -87,6 +88,34 @@ TEST_F(LikeAGpu, TheTreeOfAsManyTrianglesAsTheDeviceSays) {
     const BuiltTree alone = build_on(test_device(), std::span(triangles).first(count), options);
     const std::vector<Node> nodes = executor.read(Slot<Node>{plan.nodes.place, alone.nodes.size()});
     EXPECT_EQ(tree_hash(nodes), tree_hash(alone.nodes)) << to_string(options.variants);
+  }
+}
+
+TEST_F(LikeAGpu, SameTreesOfABatch) {
+  std::vector<Triangle> triangles;
+  std::vector<BatchRange> ranges;
+  for (const char* name : {"planar-grid", "coincident-and-random", "nested"}) {
+    for (const std::uint32_t size : {1u, 7u, 64u, 250u}) {
+      const auto more = scene_arrays(find_hard_case(name)->make(size, 1)).triangles;
+      ranges.push_back({static_cast<uint>(triangles.size()), static_cast<uint>(more.size())});
+      triangles.insert(triangles.end(), more.begin(), more.end());
+    }
+  }
+  Layout layout(device().properties().max_block_bytes);
+  const BatchPlan plan = plan_batch(layout, static_cast<std::uint32_t>(triangles.size()),
+                                    static_cast<std::uint32_t>(ranges.size()), {});
+  GpuExecutor executor(device(), layout);
+  executor.upload(plan.primitives.triangles, std::span<const Triangle>(triangles));
+  executor.upload(plan.ranges, std::span<const BatchRange>(ranges));
+  Chain chain = executor.chain();
+  append_batch(chain, plan);
+  executor.record(chain.steps()).submit_and_wait(submit_limit_seconds);
+  const std::vector<Node> nodes = executor.read(plan.nodes);
+  for (const BatchRange& range : ranges) {
+    const BuiltTree alone =
+        build_on(test_device(), std::span(triangles).subspan(range.first, range.count), {});
+    const auto tree = std::span(nodes).subspan(2 * std::size_t{range.first}, alone.nodes.size());
+    EXPECT_EQ(tree_hash(tree), tree_hash(alone.nodes)) << range.count;
   }
 }
 

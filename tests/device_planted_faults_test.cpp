@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "apps/frame.h"
+#include "pipeline/batch.h"
 #include "pipeline/copy_limit.h"
 #include "pipeline/scan.h"
 #include "pipeline/wide.h"
@@ -92,22 +93,24 @@ Found run_scan_and_copy(Device& device, const Spoil& spoil) {
   return {std::move(difference), {executor.nearly().begin(), executor.nearly().end()}};
 }
 
-// Vertices to triangles, and boxes as they are given.
+// Vertices to a batch of trees, and boxes as they are given.
 Found run_inputs(Device& device, const Spoil& spoil) {
   constexpr std::uint32_t count = 300;
   const std::vector<Triangle> triangles = random_triangles(count, 1);
   const std::vector<Aabb> boxes(count, Aabb{vec3(1), vec3(2)});
+  const std::vector<BatchRange> ranges = {{0, 100}, {100, 200}};
   Layout layout(device.properties().max_block_bytes);
   const auto vertices = layout.add<Triangle>("vertices", count);
   const auto given = layout.add<Aabb>("given", count);
-  const PrimitiveSlots gathered = plan_primitives(layout, count, PrimitiveKind::triangles);
+  const BatchPlan batch = plan_batch(layout, count, 2, {});
   const PrimitiveSlots primitives = plan_primitives(layout, count, PrimitiveKind::boxes);
   LockstepExecutor executor(device, layout);
   executor.upload(vertices, std::span<const Triangle>(triangles));
   executor.upload(given, std::span<const Aabb>(boxes));
+  executor.upload(batch.ranges, std::span<const BatchRange>(ranges));
   auto difference = executor.run([&](Chain& chain) {
     VertexTriangles input{.vertices = {chain.at(vertices).value}, .vertex_count = 3 * count};
-    append_primitives(chain, gathered, {input, {}});
+    append_batch(chain, batch, {input, {}});
     append_primitives(chain, primitives, {GivenBoxes{{chain.at(given).value}}, {}});
     spoil(chain.steps(), executor);
   });

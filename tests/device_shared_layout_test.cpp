@@ -55,6 +55,8 @@ TEST(SharedLayout, ElementsOfEverySlot) {
   EXPECT_SAME_LAYOUT(Node);
   EXPECT_SAME_LAYOUT(BuildState);
   EXPECT_SAME_LAYOUT(PlocRound);
+  EXPECT_SAME_LAYOUT(BatchRange);
+  EXPECT_SAME_LAYOUT(BatchTree);
   EXPECT_SAME_LAYOUT(Ray);
   EXPECT_SAME_LAYOUT(Hit);
   EXPECT_SAME_LAYOUT(Film);
@@ -65,7 +67,7 @@ TEST(SharedLayout, ElementsOfEverySlot) {
   EXPECT_SAME_LAYOUT(WideEntry);
   EXPECT_SAME_LAYOUT(WideLevel);
   EXPECT_SAME_LAYOUT(WideCounts);
-  EXPECT_EQ(seen.size(), 15u);
+  EXPECT_EQ(seen.size(), 17u);
 }
 
 }  // namespace

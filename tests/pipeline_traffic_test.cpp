@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include "pipeline/batch.h"
 #include "pipeline/build.h"
 #include "pipeline/copy_limit.h"
 #include "pipeline/scan.h"
@@ -142,20 +143,23 @@ TEST(Traffic, OfACountOnTheDevice) {
   }
 }
 
-TEST(Traffic, OfVerticesAndBoxes) {
+TEST(Traffic, OfVerticesBoxesAndABatch) {
   Layout layout;
   const PrimitiveSlots gathered = plan_primitives(layout, 1000, PrimitiveKind::triangles);
   const PrimitiveSlots given = plan_primitives(layout, 1000, PrimitiveKind::boxes);
+  const BatchPlan batch = plan_batch(layout, 6400, 100, {});
   Chain chain({0});
   append_primitives(chain, gathered, {VertexTriangles{.indices = {4096}, .index_bytes = 2}, {}});
   append_primitives(chain, given, {GivenBoxes{}, {}});
+  append_batch(chain, batch);
   std::map<std::string, std::uint64_t> bytes;
   for (const Step& step : chain.steps()) {
     if (step.stage) bytes[step.stage->name] += modelled_bytes(step, {}).value();
   }
   EXPECT_EQ(bytes["gather_triangles"], 1000u * (36 + 6 + 36));
   EXPECT_EQ(bytes["box_bounds"], 1000u * 48);
-  EXPECT_EQ(bytes["primitive_bounds"], 1000u * 60);
+  EXPECT_EQ(bytes["primitive_bounds"], 7400u * 60);
+  EXPECT_EQ(bytes["batch_build"], 100u * 24 + 6400 * 88);
 }
 
 TEST(Traffic, OfAScanWithAndWithoutLookback) {

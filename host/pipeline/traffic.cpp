@@ -99,6 +99,14 @@ Bytes finish_bytes(const RunCounts& counts) {
   return clusters * sizeof(Node) + (2 * clusters - 1) * sizeof(Node);
 }
 
+// As if every primitive were an active one of a tree. Codes, clusters and partners stay in shared memory.
+std::optional<Bytes> batch_bytes(const Step& step) {
+  const auto* const a = args_of(step, stages::batch_build);
+  if (!a) return std::nullopt;
+  return Bytes{a->range_count} * (sizeof(BatchRange) + sizeof(BatchTree)) +
+         Bytes{a->primitive_count} * (sizeof(Aabb) + 2 * sizeof(Node));
+}
+
 std::optional<Bytes> ploc_bytes(const Step& step, const RunCounts& counts) {
   // A round without workgroups, which is the finish's, moves nothing in these stages.
   const auto round = [&](std::uint32_t index) {
@@ -118,7 +126,7 @@ std::optional<Bytes> ploc_bytes(const Step& step, const RunCounts& counts) {
   // A leaf is read in sorted order, and all nodes are written once; what tiles hand over is little beside it.
   if (const auto* a = args_of(step, stages::hploc_build))
     return Bytes{counts.active_count} * (4 + 4 * a->key_words + sizeof(Aabb) + 2 * sizeof(Node));
-  return std::nullopt;
+  return batch_bytes(step);
 }
 
 // New wide nodes. Together they open every internal binary node once, and read the two nodes below it.

@@ -16,16 +16,19 @@ std::string describe_error_word(std::uint32_t error_word) {
       {ERROR_SCAN_LOOKBACK,
        "prefix_scan: a tile waited in vain for the sums of the tiles before it (--lookback off does "
        "without)"},
-      {ERROR_PLOC_ROUNDS, "ploc_finish: the rounds did not end with one cluster within their bound"},
+      {ERROR_PLOC_ROUNDS,
+       "ploc_finish or batch_build: the rounds did not end with one cluster within their bound"},
       {ERROR_TREE_TOO_DEEP, "trace_closest: the tree is deeper than the traversal stack"},
       {ERROR_TRACE_STEPS,
        "trace_closest, trace_wide or trace_wide_single: a ray needs more steps than this driver's loops may "
        "take"},
       {ERROR_COUNT,
-       "primitive_bounds, box_bounds, sort_pass, sort_scatter or prefix_scan: the count on the "
+       "primitive_bounds, box_bounds, sort_pass, sort_scatter, prefix_scan or batch_build: the count on the "
        "device is larger than "
        "what was "
        "planned for"},
+      {ERROR_BATCH_RANGE,
+       "batch_build: a range has more primitives than a tree of a batch, or lies beyond the last of them"},
       {ERROR_WIDE_TOO_DEEP, "wide_root: the tree is deeper than the conversion to wide nodes takes"},
   };
   std::string description;

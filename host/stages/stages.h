@@ -1,5 +1,6 @@
 #pragma once
 
+#include "interface/batch.h"
 #include "interface/bounds.h"
 #include "interface/copy.h"
 #include "interface/gather.h"
@@ -32,6 +33,7 @@
   STAGE(ploc_merge, PlocMergeArgs, PlocMergeConstants, exactly)                        \
   STAGE(ploc_finish, PlocFinishArgs, PlocFinishConstants, exactly)                     \
   STAGE(hploc_build, HplocBuildArgs, HplocBuildConstants, exactly)                     \
+  STAGE(batch_build, BatchBuildArgs, BatchBuildConstants, exactly)                     \
   STAGE(wide_root, WideCollapseArgs, NoConstants, exactly)                             \
   STAGE(wide_collapse, WideCollapseArgs, NoConstants, exactly)                         \
   STAGE(wide_sizes, WideSizesArgs, NoConstants, exactly)                               \

@@ -1,3 +1,5 @@
+#ifndef COPPICE_LIB_NORMALISED
+#define COPPICE_LIB_NORMALISED
 // Normalised coordinates: world units times a power of two that brings the scene's largest coordinate to [2^59, 2^60),
 // so that no area overflows and none is denormal. See docs/numerics.md, "Normalised coordinates".
 #include "lib/ordered_float.glsl"
@@ -31,3 +33,5 @@ vec3 normalised(vec3 position, Normalisation normalisation) {
   precise vec3 scaled = position * normalisation.factor_a * normalisation.factor_b;
   return mix(scaled, vec3(0.0), lessThan(abs(scaled), vec3(NORMALISED_FLOOR)));
 }
+
+#endif

@@ -3,11 +3,12 @@
 // The subgroup goes over the list in blocks. Those that the clusters of the current one may merge with are in registers,
 // and what the clusters about it have chosen.
 //
-// The including kernel defines RADIUS, a specialization constant, `args` with the state, and where clusters and
+// The including kernel defines RADIUS, a specialization constant, how the tree's box is normalised, and where clusters and
 // partners are kept:
+#include "lib/ploc_meet.glsl"
+Normalisation tree_normalisation();
 Node load_cluster(uint i);
 void keep_partner(uint i, uint partner);
-#include "lib/ploc_meet.glsl"
 
 Block load_block(uint i, uint cluster_count, Normalisation normalisation) {
   Block block = Block(Box(vec3(-FAR), vec3(FAR)), Nearest(NO_AREA, 0u));
@@ -45,7 +46,7 @@ uint count_fate(uint i, int choice, bool mutual, bool keep) {
 
 // The lane's part of the tile's sums; keeps the partners if asked.
 uint search_tile(uint first, uint last, uint cluster_count, bool keep) {
-  Normalisation normalisation = scene_normalisation(args.state.at[0]);
+  Normalisation normalisation = tree_normalisation();
   const uint halo = BLOCKS_AHEAD * LANES;
   uint lead = first == 0u ? 0u : 2u * halo;  // a choice depends on `halo` clusters before it, a pair on two choices
   uint sums = 0u;
