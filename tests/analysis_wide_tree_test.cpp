@@ -8,7 +8,7 @@
 #include <functional>
 
 #include "analysis/wide_tree.h"
-#include "apps/frame.h"
+#include "render/frame.h"
 #include "builders/hploc.h"
 #include "builders/lbvh.h"
 #include "builders/ploc.h"

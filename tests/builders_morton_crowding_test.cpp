@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "apps/frame.h"
+#include "render/frame.h"
 #include "builders/lbvh.h"
 #include "builders/leaves.h"
 #include "builders/morton_crowding.h"

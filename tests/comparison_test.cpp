@@ -1,11 +1,11 @@
 // Tables and plots of a comparison stay whole whatever the scenes are called and the rows say.
-#include "apps/comparison.h"
+#include "measure/comparison.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "apps/comparison_text.h"
+#include "measure/comparison_text.h"
 
 namespace coppice {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "analysis/compare.h"
 #include "analysis/cpu_tracer.h"
-#include "apps/frame.h"
+#include "render/frame.h"
 #include "builders/registry.h"
 #include "scene/generators.h"
 #include "stages/errors.h"

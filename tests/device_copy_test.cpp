@@ -1,7 +1,7 @@
 // The copy that other kernels are measured by copies, and copies all.
 #include <gtest/gtest.h>
 
-#include "pipeline/copy_limit.h"
+#include "measure/copy_limit.h"
 #include "stages/lockstep_executor.h"
 #include "support/test_device.h"
 

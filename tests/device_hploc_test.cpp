@@ -6,7 +6,7 @@
 
 #include "analysis/tree_hash.h"
 #include "analysis/validate.h"
-#include "apps/frame.h"
+#include "render/frame.h"
 #include "builders/hploc.h"
 #include "builders/lbvh.h"
 #include "interface/hploc.h"

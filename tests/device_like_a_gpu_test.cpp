@@ -5,9 +5,9 @@
 
 #include "analysis/compare.h"
 #include "analysis/tree_hash.h"
-#include "apps/frame.h"
 #include "pipeline/batch.h"
 #include "pipeline/ray_tracing.h"
+#include "render/frame.h"
 #include "scene/hard_cases.h"
 #include "stages/gpu_executor.h"
 #include "support/device_run.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "apps/frame.h"
+#include "render/frame.h"
 #include "scene/hard_cases.h"
 #include "stages/lockstep_executor.h"
 #include "stages/stages.h"

@@ -7,11 +7,11 @@
 #include <set>
 #include <utility>
 
-#include "apps/frame.h"
+#include "measure/copy_limit.h"
 #include "pipeline/batch.h"
-#include "pipeline/copy_limit.h"
 #include "pipeline/scan.h"
 #include "pipeline/wide.h"
+#include "render/frame.h"
 #include "scene/hard_cases.h"
 #include "stages/lockstep_executor.h"
 #include "stages/stages.h"

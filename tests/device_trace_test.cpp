@@ -8,7 +8,7 @@
 
 #include "analysis/compare.h"
 #include "analysis/cpu_tracer.h"
-#include "apps/frame.h"
+#include "render/frame.h"
 #include "builders/ploc.h"
 #include "scene/hard_cases.h"
 #include "stages/errors.h"

@@ -5,7 +5,7 @@
 
 #include "analysis/tree_hash.h"
 #include "analysis/validate.h"
-#include "apps/frame.h"
+#include "render/frame.h"
 #include "builders/ploc.h"
 #include "scene/hard_cases.h"
 #include "stages/gpu_executor.h"

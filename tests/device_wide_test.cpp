@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "analysis/wide_tree.h"
-#include "apps/frame.h"
+#include "render/frame.h"
 #include "builders/registry.h"
 #include "pipeline/wide.h"
 #include "scene/hard_cases.h"

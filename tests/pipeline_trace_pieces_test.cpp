@@ -8,7 +8,7 @@
 #include <optional>
 #include <random>
 
-#include "apps/frame.h"
+#include "render/frame.h"
 #include "builders/ploc.h"
 #include "pipeline/trace_pieces.h"
 #include "pipeline/wide.h"

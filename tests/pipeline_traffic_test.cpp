@@ -3,12 +3,12 @@
 
 #include <map>
 
+#include "measure/copy_limit.h"
+#include "measure/traffic.h"
 #include "pipeline/batch.h"
 #include "pipeline/build.h"
-#include "pipeline/copy_limit.h"
 #include "pipeline/scan.h"
 #include "pipeline/trace.h"
-#include "pipeline/traffic.h"
 #include "pipeline/wide.h"
 #include "stages/stages.h"
 
@@ -110,7 +110,8 @@ TEST(Traffic, OfATraceOfTwoSamples) {
   counters.steps = {30000, 1};
   std::map<std::string, std::uint64_t> bytes;
   for (const Step& step : chain.steps()) {
-    if (stage_of(step)) bytes[stage_of(step)->name] += modelled_bytes(step, counts_of_trace(counters)).value();
+    if (stage_of(step))
+      bytes[stage_of(step)->name] += modelled_bytes(step, counts_of_trace(counters)).value();
   }
   EXPECT_EQ(bytes["camera_rays"], 2000u * 48);
   EXPECT_EQ(bytes["trace_closest"], 2000u * 64 + 64 * ((std::uint64_t{1} << 32) + 30000) + 500 * 36);
@@ -193,7 +194,8 @@ TEST(Traffic, OfASortOfKeysAlone) {
 
 TEST(Traffic, EveryStageHasAModel) {
   for (const StageDeclaration* stage : all_stages()) {
-    EXPECT_TRUE(modelled_bytes(Dispatch{.stage = stage}, {})) << stage->name << ": none in host/pipeline/traffic.cpp";
+    EXPECT_TRUE(modelled_bytes(Dispatch{.stage = stage}, {}))
+        << stage->name << ": none in host/measure/traffic.cpp";
   }
 }
 

@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "analysis/cpu_tracer.h"
-#include "apps/frame.h"
+#include "render/frame.h"
 #include "builders/registry.h"
 #include "scene/load_obj.h"
 

@@ -1,5 +1,5 @@
 // When a benchmark begins to count, and whether it may say that it was stable.
-#include "apps/steady_state.h"
+#include "measure/steady_state.h"
 
 #include <gtest/gtest.h>
 

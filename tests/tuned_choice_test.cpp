@@ -1,5 +1,5 @@
 // Which variant tuning keeps: a faster one only where repeated measurements leave no doubt.
-#include "apps/tuned_choice.h"
+#include "measure/tuned_choice.h"
 
 #include <gtest/gtest.h>
 

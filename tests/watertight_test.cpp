@@ -13,7 +13,7 @@
 #include "analysis/hard_rays.h"
 #include "analysis/judge_hits.h"
 #include "analysis/ray_targets.h"
-#include "apps/frame.h"
+#include "render/frame.h"
 #include "builders/ploc.h"
 #include "scene/hard_cases.h"
 #include "stages/stages.h"

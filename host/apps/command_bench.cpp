@@ -2,7 +2,10 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "apps/bench.h"
+#include "apps/command.h"
+#include "apps/open_device.h"
+#include "apps/option_rules.h"
+#include "measure/bench.h"
 #include "scene/input_error.h"
 #include "scene/write_file.h"
 
@@ -10,45 +13,80 @@ namespace coppice {
 
 namespace {
 
-void print_row(const BenchRow& row) {
-  std::printf("  %-15s %-16s %10llu %10.3f %10.3f %10.3f %10.2f", row.name.c_str(), row.input.c_str(),
-              static_cast<unsigned long long>(row.size), row.ms.median, row.ms.least, row.ms.greatest,
-              row.millions_per_s());
-  if (!row.note.empty()) std::printf("  %s", row.note.c_str());
-  std::printf("%s\n", row.stable ? "" : "  not stable");
-  std::fflush(stdout);
-}
+class BenchCommand : public Command {
+ public:
+  void add_options(CLI::App& app) override {
+    std::vector<std::string> names;
+    for (const NamedBench& bench : benches()) names.emplace_back(bench.name);
+    app.add_option("WHAT", what_)->required()->check(CLI::IsMember(names));
+    app.add_option("SCENE", options_.scenes, "of the trace; default: grove and hard:detail-on-ground")
+        ->expected(1);
+    app.add_option("--most", options_.most, "words, keys or triangles of the largest size")
+        ->check(CLI::Range(4u, 1u << 26))
+        ->capture_default_str();
+    app.add_option("--only", options_.only, "only rows of whose name and input this is a part")
+        ->type_name("TEXT[,TEXT...]")
+        ->delimiter(',');
+    app.add_option("--builder", options_.builders,
+                   "of build and trace; default: all for build, gpu-ploc for trace")
+        ->delimiter(',')
+        ->check(CLI::IsMember(device_builder_names()));
+    add_runs(app, options_.runs, "that count, after a warm-up until the median is stable");
+    app.add_option("--csv", files.csv, "write the table to FILE")->type_name("FILE");
+    add_view(app, picture_, options_.up);
+    add_ploc(app, options_.builder, device_.choices);
+    add_device(app, device_.options);
+  }
+
+  void check(const CLI::App& app) override {
+    parse_view(picture_);
+    const bool traces = what_ == "trace", builds = what_ == "build" || traces;
+    const bool has_trees = what_ == "ploc" || builds;
+    check_options_matter(app,
+                         {{"SCENE", traces, "bench trace"},
+                          {"--size", traces, "bench trace"},
+                          {"--camera", traces, "bench trace"},
+                          {"--up", traces, "bench trace"},
+                          {"--builder", builds, "bench build or trace"},
+                          {"--radius", has_trees, "bench ploc, build or trace"},
+                          {"--morton-bits", has_trees, "bench ploc, build or trace"},
+                          {"--variants", has_trees || what_ == "sort", "bench sort, ploc, build or trace"},
+                          {"--most", !traces, "bench sort, scan, ploc or build"}});
+  }
+
+  std::vector<std::string> scenes() const override { return options_.scenes; }
+
+  int run() override {
+    options_.trace = picture_.trace;
+    options_.camera = picture_.camera;
+    CheckedDevice device = open_device(device_, options_.builder);
+    const DeviceProperties& properties = device.properties();
+    note_timestamps(device);
+    std::vector<BenchRow> rows;
+    Table table = bench_table();
+    if (files.talks()) print(properties.name + ", " + properties.driver + "\n" + table.text_header());
+    std::ranges::find(benches(), what_, &NamedBench::name)->run(device, options_, [&](BenchRow row) {
+      const Row& added = add_row(table, row);
+      if (files.talks()) print(table.text(added));
+      std::fflush(stdout);
+      rows.push_back(std::move(row));
+    });
+    if (rows.empty()) throw InputError("bench " + what_ + ": nothing has what --only asks for");
+    if (!files.csv.empty()) write_file(files.csv, csv_of(table, properties) + "\n");
+    write_json(files.json,
+               {{"device", properties.name}, {"driver", properties.driver}, {"rows", to_json(table, rows)}});
+    return validation_status(device);
+  }
+
+ private:
+  std::string what_;  // one of benches()
+  BenchOptions options_;
+  PictureOptions picture_;
+  DeviceSetup device_;
+};
 
 }  // namespace
 
-std::span<const NamedBench> benches() {
-  static constexpr NamedBench list[] = {{"sort", bench_sort},
-                                        {"scan", bench_scan},
-                                        {"ploc", bench_ploc},
-                                        {"build", bench_build},
-                                        {"trace", bench_trace}};
-  return list;
-}
-
-int run_bench(const Options& options) {
-  CheckedDevice device = open_device(options, {});
-  const DeviceProperties& properties = device.properties();
-  note_timestamps(device.device());
-  std::vector<BenchRow> rows;
-  if (talks(options)) {
-    std::printf("%s, %s\n  %-15s %-16s %10s %10s %10s %10s %10s\n", properties.name.c_str(),
-                properties.driver.c_str(), "", "input", "size", "median ms", "min", "max", "millions/s");
-  }
-  std::ranges::find(benches(), options.bench, &NamedBench::name)->run(device, options, [&](BenchRow row) {
-    if (talks(options)) print_row(row);
-    rows.push_back(std::move(row));
-  });
-  if (rows.empty()) throw InputError("bench " + options.bench + ": nothing has what --only asks for");
-  Json json = Json::array();
-  for (const BenchRow& row : rows) json.push_back(to_json(row));
-  if (!options.csv.empty()) write_file(options.csv, bench_csv(rows, properties) + "\n");
-  write_json(options.json, {{"device", properties.name}, {"driver", properties.driver}, {"rows", json}});
-  return validation_status(device.device());
-}
+std::unique_ptr<Command> make_bench() { return std::make_unique<BenchCommand>(); }
 
 }  // namespace coppice

@@ -9,7 +9,7 @@
 
 #include "apps/command_line.h"
 #include "apps/heap.h"
-#include "apps/progress.h"
+#include "measure/progress.h"
 #include "pipeline/interruption.h"
 
 namespace {

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "render/scene_room.h"
+
 namespace coppice {
 
 namespace {
@@ -21,58 +23,37 @@ std::string remedy_of_slow_driver() {
          " LD_LIBRARY_PATH=" + (newer / "lib").string();
 }
 
-WalkChoice walk_choice_of(const std::string& tree) {
-  WalkChoice choice;
-  choice.said = "--tree " + tree;
-  choice.any_wide = tree == "wide";
-  if (tree == "binary") choice.walk = Walk::binary;
-  if (tree == "wide-packets") choice.walk = Walk::wide_packets;
-  if (tree == "wide-single") choice.walk = Walk::wide_single;
-  return choice;
-}
-
-LookbackChoice lookback_choice_of(const std::string& lookback) {
-  if (lookback == "auto") return LookbackChoice::automatic;
-  return lookback == "on" ? LookbackChoice::on : LookbackChoice::off;
-}
+}  // namespace
 
 void print_note(const std::string& line) { std::fprintf(stderr, "note: %s\n", line.c_str()); }
 
-}  // namespace
-
-BuildOptions build_options_of(const Options& options, std::uint32_t morton_bits) {
-  BuildOptions build;
-  build.radius = options.radius;
-  build.morton_bits = morton_bits;
-  if (const NamedDeviceBuilder* named = find_device_builder(options.builder)) build.builder = named->builder;
-  return build;
+void print_warnings(const Scene& scene) {
+  for (const std::string& warning : scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
 }
 
-TraceOptions trace_options_of(const Options& options) {
-  TraceOptions trace;
-  trace.width = options.width;
-  trace.height = options.height;
-  trace.samples = options.samples;
-  if (options.builder == "none") trace.walk = Walk::brute_force;
-  trace.triangle_test = options.triangle_test == "fast" ? TRIANGLE_FAST : TRIANGLE_WATERTIGHT;
-  trace.box_test = options.box_test == "fast" ? BOX_FAST : BOX_ROBUST;
-  return trace;
+Scene open_scene_of(const SceneOptions& options, const BuilderChoice& builder, const DeviceSetup& device,
+                    bool on_device) {
+  std::optional<BuildOptions> build;
+  if (builder.on_device()) build = builder.least_build_options();
+  Scene scene = open_scene_with_room(options, on_device ? &device.options : nullptr, build, print_note);
+  print_warnings(scene);
+  return scene;
 }
 
-CheckedDevice open_device(const Options& options, const CommandUse& command) {
-  DeviceUse use{command.builds,
-                build_options_of(options, options.morton_bits == "60" ? 60 : 30),
-                {},
-                command.triangle_count};
-  if (command.traces) use.traces.push_back(trace_options_of(options));
-  const DeviceChoices choices{lookback_choice_of(options.lookback), options.variants,
-                              walk_choice_of(options.tree), remedy_of_slow_driver()};
-  return CheckedDevice({options.device, options.validate, false, cache_folder()}, choices, use, print_note,
-                       isatty(STDERR_FILENO) ? print_note : Note());
+CheckedDevice open_device(const DeviceSetup& device, const DeviceUse& use) {
+  DeviceOptions options = device.options;
+  options.pipeline_folder = cache_folder();
+  DeviceChoices choices = device.choices;
+  choices.slow_driver_remedy = remedy_of_slow_driver();
+  return CheckedDevice(options, choices, use, print_note, isatty(STDERR_FILENO) ? print_note : Note());
 }
 
-int validation_status(Device& device) {
-  const auto messages = device.take_validation_messages();
+CheckedDevice open_device(const DeviceSetup& device, const BuilderChoice& builder) {
+  return open_device(device, DeviceUse{.build = builder.least_build_options(), .traces = {}});
+}
+
+int validation_status(CheckedDevice& device) {
+  const auto messages = device.device().take_validation_messages();
   for (const std::string& message : messages) std::fprintf(stderr, "validation: %s\n", message.c_str());
   return messages.empty() ? 0 : 1;
 }

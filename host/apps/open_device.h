@@ -1,27 +1,31 @@
 #pragma once
 
-#include "apps/options.h"
+#include <string>
+
+#include "apps/option_groups.h"
 #include "pipeline/checked_device.h"
+#include "scene/scene.h"
 
 namespace coppice {
 
-// What the options say of a build; `morton_bits`: 30 or 60, see morton_bits_for.
-BuildOptions build_options_of(const Options& options, std::uint32_t morton_bits);
+// A line that is no error, to stderr.
+void print_note(const std::string& line);
 
-// What they say of a trace.
-TraceOptions trace_options_of(const Options& options);
+// The scene's warnings, a line each, to stderr.
+void print_warnings(const Scene& scene);
 
-// What a command is going to do on its device, and does not check by itself.
-struct CommandUse {
-  bool builds = true;
-  bool traces = false;
-  std::uint32_t triangle_count = 0;  // of the scene that it traces
-};
+// Opens the scene where it fits, and says what was odd about it. `on_device`: whether a device holds it.
+Scene open_scene_of(const SceneOptions& scene, const BuilderChoice& builder, const DeviceSetup& device,
+                    bool on_device);
 
-// Notes go to stderr. Throws DeviceError if there is no such device or it fails.
-CheckedDevice open_device(const Options& options, const CommandUse& command);
+// The device that was asked for, checked; notes go to stderr. Throws DeviceError if there is no such device
+// or it fails.
+CheckedDevice open_device(const DeviceSetup& device, const DeviceUse& use);
+
+// For builds of such a builder.
+CheckedDevice open_device(const DeviceSetup& device, const BuilderChoice& builder);
 
 // Prints what the validation layers said, if anything; then the exit status is 1, else 0.
-int validation_status(Device& device);
+int validation_status(CheckedDevice& device);
 
 }  // namespace coppice

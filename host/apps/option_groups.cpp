@@ -7,7 +7,6 @@
 #include "interface/ploc.h"
 #include "pipeline/build.h"
 #include "scene/printable.h"
-#include "scene/scene.h"
 #include "scene/view.h"
 
 namespace coppice {
@@ -16,24 +15,25 @@ namespace {
 constexpr std::uint32_t max_side = 16383;  // a square of it is the most that write_png takes
 
 // "1024x768" into width and height, each 1 to max_side.
-std::string parse_size(Options& options) {
-  if (options.size.empty()) return {};
-  const char* const end = options.size.data() + options.size.size();
-  auto [middle, first_error] = std::from_chars(options.size.data(), end, options.width);
+std::string parse_size(PictureOptions& picture) {
+  if (picture.size.empty()) return {};
+  TraceOptions& trace = picture.trace;
+  const char* const end = picture.size.data() + picture.size.size();
+  auto [middle, first_error] = std::from_chars(picture.size.data(), end, trace.width);
   const bool first = first_error == std::errc() && middle != end && *middle == 'x';
   const auto [last, second_error] =
-      first ? std::from_chars(middle + 1, end, options.height) : std::from_chars_result{};
+      first ? std::from_chars(middle + 1, end, trace.height) : std::from_chars_result{};
   const bool parsed = first && second_error == std::errc() && last == end;
   const auto in_range = [](std::uint32_t side) { return side >= 1 && side <= max_side; };
-  if (parsed && in_range(options.width) && in_range(options.height)) return {};
-  return "--size: '" + options.size + "' is not WxH with sides of 1 to " + std::to_string(max_side);
+  if (parsed && in_range(trace.width) && in_range(trace.height)) return {};
+  return "--size: '" + picture.size + "' is not WxH with sides of 1 to " + std::to_string(max_side);
 }
 
 // Numbers between commas.
-std::string parse_camera(Options& options) {
-  if (options.camera_text.empty()) return {};
-  const std::string& text = options.camera_text;
-  options.camera.clear();
+std::string parse_camera(PictureOptions& picture) {
+  if (picture.camera_text.empty()) return {};
+  const std::string& text = picture.camera_text;
+  picture.camera.clear();
   for (std::size_t begin = 0, end = 0; end != std::string::npos; begin = end + 1) {
     end = text.find(',', begin);
     std::string word = text.substr(begin, end == std::string::npos ? end : end - begin);
@@ -42,37 +42,76 @@ std::string parse_camera(Options& options) {
     const auto [last, error] = std::from_chars(word.data(), word.data() + word.size(), number);
     if (error != std::errc() || last != word.data() + word.size())
       return "--camera: '" + printable(std::string_view(word)) + "' is no number";
-    options.camera.push_back(number);
+    picture.camera.push_back(number);
   }
-  const std::string complaint = complaint_about_view(options.camera);
+  const std::string complaint = complaint_about_view(picture.camera);
   return complaint.empty() ? std::string() : "--camera: " + complaint;
+}
+
+template <class T>
+struct Word {
+  const char* word;
+  T value;
+};
+
+constexpr Word<LookbackChoice> lookback_words[] = {
+    {"auto", LookbackChoice::automatic}, {"on", LookbackChoice::on}, {"off", LookbackChoice::off}};
+constexpr Word<std::uint32_t> morton_words[] = {{"auto", 0}, {"30", 30}, {"60", 60}};
+constexpr Word<std::uint32_t> triangle_test_words[] = {
+    {"auto", TRIANGLE_WATERTIGHT}, {"fast", TRIANGLE_FAST}, {"watertight", TRIANGLE_WATERTIGHT}};
+constexpr Word<std::uint32_t> box_test_words[] = {
+    {"auto", BOX_ROBUST}, {"fast", BOX_FAST}, {"robust", BOX_ROBUST}};
+
+template <class T, std::size_t N>
+std::string word_of(const Word<T> (&words)[N], T value) {
+  return std::ranges::find(words, value, &Word<T>::value)->word;
+}
+
+// An option that takes one of a few words, the first if not given.
+template <class T, std::size_t N>
+void add_words(CLI::App& app, const std::string& name, T& value, const Word<T> (&words)[N],
+               const std::string& help) {
+  std::vector<std::string> names;
+  for (const Word<T>& word : words) names.emplace_back(word.word);
+  value = words[0].value;
+  const auto set = [&value, &words](const std::string& given) {
+    value = std::ranges::find(words, given, &Word<T>::word)->value;
+  };
+  app.add_option_function<std::string>(name, set, help)->check(CLI::IsMember(names))->default_str(names[0]);
 }
 
 }  // namespace
 
-void check_view(Options& options) {
-  for (const std::string& error : {parse_size(options), parse_camera(options)}) {
+void parse_view(PictureOptions& picture) {
+  for (const std::string& error : {parse_size(picture), parse_camera(picture)}) {
     if (!error.empty()) throw CLI::ValidationError(error);
   }
 }
 
-void add_named_device(CLI::App& command, Options& options) {
-  command.add_option("--device", options.device, "part of a device's name, or its index")
-      ->type_name("NAME|INDEX");
+std::string word_of_lookback(LookbackChoice lookback) { return word_of(lookback_words, lookback); }
+std::string word_of_triangle_test(std::uint32_t test) { return word_of(triangle_test_words, test); }
+std::string word_of_box_test(std::uint32_t test) { return word_of(box_test_words, test); }
+std::string word_of_morton_bits(std::uint32_t bits) { return word_of(morton_words, bits); }
+
+void add_named_device(CLI::App& app, DeviceOptions& device) {
+  app.add_option("--device", device.select, "part of a device's name, or its index")->type_name("NAME|INDEX");
 }
 
-void add_device(CLI::App& command, Options& options) {
-  add_named_device(command, options);
-  command.add_flag("--validate", options.validate, "Vulkan validation layers on; a message is a failure");
+void add_device(CLI::App& app, DeviceOptions& device) {
+  add_named_device(app, device);
+  app.add_flag("--validate", device.validate, "Vulkan validation layers on; a message is a failure");
 }
 
-void add_trace_events(CLI::App& command, Options& options) {
-  command.add_option("--trace-events", options.trace_events, "write every kernel as a Chrome trace event")
-      ->type_name("FILE");
+void add_trace_events(CLI::App& app, std::string& file) {
+  app.add_option("--trace-events", file, "write every kernel as a Chrome trace event")->type_name("FILE");
 }
 
-void add_scene(CLI::App& command, Options& options) {
-  command.add_option("SCENE", options.scene, "an .obj file or a built-in scene")->capture_default_str();
+void add_runs(CLI::App& app, std::uint32_t& runs, const std::string& help) {
+  app.add_option("--runs", runs, help)->check(CLI::Range(1u, 10000u))->capture_default_str();
+}
+
+void add_scene(CLI::App& app, SceneOptions& scene) {
+  app.add_option("SCENE", scene.spec, "an .obj file or a built-in scene")->capture_default_str();
 }
 
 std::vector<std::string> device_builder_names() {
@@ -88,41 +127,32 @@ std::vector<std::string> builder_names() {
   return builders;
 }
 
-void add_builder(CLI::App& command, Options& options, const std::vector<std::string>& names) {
-  command.add_option("--builder", options.builder)->check(CLI::IsMember(names))->capture_default_str();
+void add_builder(CLI::App& app, BuilderChoice& builder, const std::vector<std::string>& names) {
+  app.add_option("--builder", builder.name)->check(CLI::IsMember(names))->capture_default_str();
 }
 
-void add_leaf_size(CLI::App& command, Options& options) {
-  command
-      .add_option("--leaf-size", options.leaf_size,
-                  "gd16-early: the most references that are not split any further")
+void add_leaf_size(CLI::App& app, BuilderChoice& builder) {
+  app.add_option("--leaf-size", builder.leaf_size,
+                 "gd16-early: the most references that are not split any further")
       ->check(CLI::Range(1u, 1u << 20))
       ->capture_default_str();
 }
 
-void add_lookback(CLI::App& command, Options& options) {
-  command
-      .add_option("--lookback", options.lookback,
-                  "prefix sums by decoupled lookback; auto: where the self-check allows it")
-      ->check(CLI::IsMember({"auto", "on", "off"}))
-      ->capture_default_str();
+void add_lookback(CLI::App& app, DeviceChoices& choices) {
+  add_words(app, "--lookback", choices.lookback, lookback_words,
+            "prefix sums by decoupled lookback; auto: where the self-check allows it");
 }
 
-void add_ploc(CLI::App& command, Options& options) {
-  command
-      .add_option("--radius", options.radius, "search radius of PLOC and H-PLOC; other builders have none")
+void add_ploc(CLI::App& app, BuilderChoice& builder, DeviceChoices& choices) {
+  app.add_option("--radius", builder.radius, "search radius of PLOC and H-PLOC; other builders have none")
       ->check(CLI::Range(1u, PLOC_MAX_RADIUS))
       ->capture_default_str();
-  command
-      .add_option("--morton-bits", options.morton_bits,
-                  "of the codes PLOC and LBVH sort by; auto: 60 where 30 leave cells crowded")
-      ->check(CLI::IsMember({"auto", "30", "60"}))
-      ->capture_default_str();
-  add_lookback(command, options);
-  command
-      .add_option(
-          "--variants", options.variants,
-          "of stages that have some; auto: as tuned, or else default, which goes by the kind of device")
+  add_words(app, "--morton-bits", builder.morton_bits, morton_words,
+            "of the codes PLOC and LBVH sort by; auto: 60 where 30 leave cells crowded");
+  add_lookback(app, choices);
+  app.add_option(
+         "--variants", choices.variants,
+         "of stages that have some; auto: as tuned, or else default, which goes by the kind of device")
       ->type_name("auto|default|STAGE=VALUE,...")
       ->check([](const std::string& text) {
         Variants variants;
@@ -131,50 +161,59 @@ void add_ploc(CLI::App& command, Options& options) {
       ->capture_default_str();
 }
 
-void add_tree(CLI::App& command, Options& options) {
-  command
-      .add_option(
-          "--tree", options.tree,
-          "which the device's tracer walks; wide: eight children a node, rays in packets or each by itself, "
-          "as the variant of the stage trace says or the option; auto: by that variant, but binary where the "
-          "scene has more triangles than the picture rays")
+void add_tree(CLI::App& app, WalkChoice& walk) {
+  const auto set = [&walk](const std::string& given) {
+    walk = {};
+    walk.said = "--tree " + given;
+    walk.any_wide = given == "wide";
+    for (const Walk one : {Walk::binary, Walk::wide_packets, Walk::wide_single}) {
+      if (given == name_of(one)) walk.walk = one;
+    }
+  };
+  app.add_option_function<std::string>(
+         "--tree", set,
+         "which the device's tracer walks; wide: eight children a node, rays in packets or each by itself, "
+         "as the variant of the stage trace says or the option; auto: by that variant, but binary where the "
+         "scene has more triangles than the picture rays")
       ->check(CLI::IsMember({"auto", "binary", "wide", "wide-packets", "wide-single"}))
-      ->capture_default_str();
+      ->default_str("auto");
 }
 
-void add_intersection(CLI::App& command, Options& options) {
-  command
-      .add_option("--triangle-test", options.triangle_test,
-                  "fast: Moeller-Trumbore; watertight: Woop, Benthin and Wald")
-      ->check(CLI::IsMember({"auto", "fast", "watertight"}))
-      ->capture_default_str();
-  command.add_option("--box-test", options.box_test, "robust: slabs widened by the rounding error")
-      ->check(CLI::IsMember({"auto", "fast", "robust"}))
-      ->capture_default_str();
+void add_intersection(CLI::App& app, TraceOptions& trace) {
+  add_words(app, "--triangle-test", trace.triangle_test, triangle_test_words,
+            "fast: Moeller-Trumbore; watertight: Woop, Benthin and Wald");
+  add_words(app, "--box-test", trace.box_test, box_test_words, "robust: slabs widened by the rounding error");
 }
 
-void add_size(CLI::App& command, Options& options) {
-  command.add_option("--size", options.size, "pixels, default 1024x768")->type_name("WxH");
+void add_size(CLI::App& app, PictureOptions& picture) {
+  app.add_option("--size", picture.size, "pixels, default 1024x768")->type_name("WxH");
 }
 
-void add_view(CLI::App& command, Options& options) {
-  add_size(command, options);
-  command
-      .add_option("--camera", options.camera_text,
-                  "eye, target, vertical field of view in degrees, and what is up in the picture, in the "
-                  "coordinates of the file; default: frames the scene")
+void add_view(CLI::App& app, PictureOptions& picture, std::string& up) {
+  add_size(app, picture);
+  app.add_option("--camera", picture.camera_text,
+                 "eye, target, vertical field of view in degrees, and what is up in the picture, in the "
+                 "coordinates of the file; default: frames the scene")
       ->type_name("X,Y,Z,X,Y,Z[,FOV][,X,Y,Z]")
       ->check([](const std::string& text) { return text.empty() ? "has no numbers" : ""; }, "");
-  command.add_option("--up", options.up, "the axis of the file that points up")
+  app.add_option("--up", up, "the axis of the file that points up")
       ->check(CLI::IsMember(std::vector<std::string>(UP_AXES.begin(), UP_AXES.end())))
       ->capture_default_str();
 }
 
-void add_picture(CLI::App& command, Options& options) {
-  add_view(command, options);
-  command.add_option("--spp", options.samples, "samples per pixel")
+void add_picture(CLI::App& app, PictureOptions& picture, std::string& up) {
+  add_view(app, picture, up);
+  app.add_option("--spp", picture.trace.samples, "samples per pixel")
       ->check(CLI::Range(1u, 65536u))
       ->capture_default_str();
+}
+
+void add_scene_and_build(CLI::App& app, SceneOptions& scene, BuilderChoice& builder, DeviceSetup& device,
+                         const std::vector<std::string>& names) {
+  add_scene(app, scene);
+  add_builder(app, builder, names);
+  add_ploc(app, builder, device.choices);
+  add_device(app, device.options);
 }
 
 }  // namespace coppice

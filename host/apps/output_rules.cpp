@@ -17,16 +17,16 @@ namespace fs = std::filesystem;
 struct Output {
   const char* option;
   const char* said;  // in messages
-  std::string Options::*file;
+  std::string OutputOptions::*file;
   const char* ending;  // what the file's name may end in; null: anything
 };
 
-constexpr Output outputs[] = {{"--output", "-o (--output)", &Options::output, ".png"},
-                              {"--json", "--json", &Options::json, nullptr},
-                              {"--trace-events", "--trace-events", &Options::trace_events, nullptr},
-                              {"--markdown", "--markdown", &Options::markdown, nullptr},
-                              {"--plot", "--plot", &Options::plot, ".svg"},
-                              {"--csv", "--csv", &Options::csv, nullptr}};
+constexpr Output outputs[] = {{"--output", "-o (--output)", &OutputOptions::picture, ".png"},
+                              {"--json", "--json", &OutputOptions::json, nullptr},
+                              {"--trace-events", "--trace-events", &OutputOptions::trace_events, nullptr},
+                              {"--markdown", "--markdown", &OutputOptions::markdown, nullptr},
+                              {"--plot", "--plot", &OutputOptions::plot, ".svg"},
+                              {"--csv", "--csv", &OutputOptions::csv, nullptr}};
 
 // What there is at the end of links, the last of which may point to nothing yet.
 fs::path without_links(fs::path path) {
@@ -88,27 +88,26 @@ void check_is_no_scene(const Output& output, const fs::path& path, const fs::pat
 
 }  // namespace
 
-void check_outputs(const CLI::App& command, const Options& options) {
+void check_outputs(const CLI::App& app, const OutputOptions& files, const std::vector<std::string>& scenes) {
   std::vector<const Output*> used;
   for (const Output& output : outputs) {
-    const CLI::Option* const option = command.get_option_no_throw(output.option);
-    const std::string& file = options.*output.file;
+    const CLI::Option* const option = app.get_option_no_throw(output.option);
+    const std::string& file = files.*output.file;
     if (!option || (option->count() == 0 && file.empty())) continue;
-    if (output.file == &Options::json && file == "-") continue;
+    if (output.file == &OutputOptions::json && file == "-") continue;
     check_name(output, file);
     used.push_back(&output);
   }
   for (const Output* output : used) {
-    const std::string& file = options.*output->file;
+    const std::string& file = files.*output->file;
     if (is_stdout(file)) {
       throw CLI::ValidationError(std::string(output->said) + ": '" + printable(fs::path(file)) +
                                  "' is where stdout goes; two outputs to one file");
     }
-    check_is_no_scene(*output, file, options.scene);
-    for (const std::string& scene : options.scenes) check_is_no_scene(*output, file, scene);
+    for (const std::string& scene : scenes) check_is_no_scene(*output, file, scene);
     for (const Output* other : used) {
       if (other == output) break;
-      if (!same_file(file, options.*other->file)) continue;
+      if (!same_file(file, files.*other->file)) continue;
       throw CLI::ValidationError(std::string(other->said) + " and " + output->said +
                                  " name one file: " + printable(fs::path(file)));
     }

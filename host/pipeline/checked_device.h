@@ -56,6 +56,7 @@ class CheckedDevice {
   // Through the wide tree as the variant of the stage trace says, or else as suits the device.
   Walk wide_walk() const;
 
+  const Note& notes() const { return note_; }
   void note(const std::string& line) const;
   void note_once(const std::string& line);
 

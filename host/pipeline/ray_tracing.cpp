@@ -2,7 +2,6 @@
 
 #include "pipeline/bounded_submits.h"
 #include "pipeline/trace_pieces.h"
-#include "pipeline/traffic.h"
 #include "stages/errors.h"
 
 namespace coppice {
@@ -69,7 +68,7 @@ template <class Executor>
 TracedRays RayTracing::result(Executor& executor, std::size_t ray_count) const {
   TracedRays traced;
   traced.hits = executor.read(Slot<Hit>{slots_.rays.hits.place, ray_count});
-  traced.hit_count = counts_of_trace(executor.read(slots_.rays.counters)[0]).hits;
+  traced.hit_count = counts_of(executor.read(slots_.rays.counters)[0]).hits;
   traced.error_word = executor.read(slots_.tree.state)[0].error_word;
   return traced;
 }

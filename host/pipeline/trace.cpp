@@ -69,6 +69,11 @@ bool can_trace_wide(const TraceOptions& options) {
          options.box_test == BOX_ROBUST;
 }
 
+TraceCounts counts_of(const TraceCounters& counters) {
+  const auto wide = [](uvec2 words) { return std::uint64_t{words.y} << 32 | words.x; };
+  return {wide(counters.rays), wide(counters.hits), wide(counters.steps)};
+}
+
 bool has_closest_hits(const TreeSlots& tree, const RayRange& range, const TraceOptions& options) {
   return range.next_triangle >= (options.walk == Walk::brute_force ? std::max(tree.triangle_count, 1u) : 1u);
 }

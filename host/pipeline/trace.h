@@ -35,6 +35,12 @@ struct RaySlots {
   Slot<TraceCounters> counters;
 };
 
+// What the counters of a trace say.
+struct TraceCounts {
+  std::uint64_t rays = 0, hits = 0, steps = 0;
+};
+TraceCounts counts_of(const TraceCounters& counters);
+
 // Where a trace of a picture keeps what, beside the tree it walks.
 struct TracePlan : RaySlots {
   TraceOptions options;

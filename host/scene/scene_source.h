@@ -47,4 +47,10 @@ std::optional<SceneSize> built_in_size(const std::string& spec);
 // loaded.
 Scene open_scene(const std::string& spec, std::string_view up = "y");
 
+// What names a scene.
+struct SceneOptions {
+  std::string spec = "grove";  // as open_scene takes it
+  std::string up = "y";        // one of UP_AXES
+};
+
 }  // namespace coppice

@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <exception>
 
-#include "apps/frame.h"
+#include "render/frame.h"
 #include "builders/registry.h"
 #include "pipeline/ray_tracing.h"
 #include "scene/scene_source.h"

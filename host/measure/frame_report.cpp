@@ -1,0 +1,86 @@
+#include "measure/frame_report.h"
+
+#include <nlohmann/json.hpp>
+
+#include "analysis/tree_hash.h"
+#include "measure/table.h"
+#include "render/film.h"
+
+namespace coppice {
+
+namespace {
+
+Json effects_of(const Scene& scene) {
+  Json effects = Json::array({"ambient"});
+  if (scene.light.radiance != vec3(0)) effects.push_back("directional_light");
+  return effects;
+}
+
+// In the coordinates of the file, as --camera takes them.
+Json camera_of(const Scene& scene, const FrameRuns& frame) {
+  const View view = choose_view(scene, frame.camera, frame.trace.width, frame.trace.height);
+  return {{"eye", coordinates(to_file(scene, view.eye))},
+          {"target", coordinates(to_file(scene, view.target))},
+          {"up", coordinates(direction_to_file(scene, -view.down))},
+          {"fov", view.vertical_fov_degrees}};
+}
+
+double mrays_per_s(const FrameReport& report) {
+  return static_cast<double>(report.rays) / report.trace_ms / 1000;
+}
+
+}  // namespace
+
+Json to_json(const FrameReport& report, const Scene& scene, const FrameRuns& frame,
+             const FrameSurroundings& around) {
+  Json json = {{"build", to_json(report.build)},
+               {"width", frame.trace.width},
+               {"height", frame.trace.height},
+               {"spp", frame.trace.samples},
+               {"offset", coordinates(scene.offset)},
+               {"camera", camera_of(scene, frame)},
+               {"tracer", around.tracer},
+               {"trace_device", report.trace_device},
+               {"tree", report.walks_wide ? "wide" : "binary"},
+               {"wide_ms", report.wide_ms},
+               {"trace_ms", report.trace_ms},
+               {"rays",
+                {{"primary", report.rays},
+                 {"shadow", 0},
+                 {"reflection", 0},
+                 {"refraction", 0},
+                 {"occlusion", 0},
+                 {"diffuse", 0}}},
+               {"mrays_per_s", mrays_per_s(report)},
+               {"effects", effects_of(scene)},
+               {"kernels", to_json(report.kernels)}};
+  sums_to_json(report.kernels, json);
+  json["image_hash"] = hex16(image_hash(report.image));
+  json["hits"] = report.hits;
+  json["steps_per_ray"] =
+      report.rays > 0 ? static_cast<double>(report.steps) / static_cast<double>(report.rays) : 0.0;
+  return json;
+}
+
+std::string text_of(const FrameReport& report, const FrameRuns& frame, const FrameSurroundings& around) {
+  const BuildReport& build = report.build;
+  std::string text =
+      format("%s: %llu triangles", build.scene.c_str(), static_cast<unsigned long long>(build.triangles));
+  if (build.inactive)
+    text += format(", %llu of them inactive", static_cast<unsigned long long>(build.inactive));
+  text += format("\n  load     %9.1f ms\n", around.load_ms);
+  if (around.prepare_ms > 0) text += format("  device   %9.1f ms  open, self-check\n", around.prepare_ms);
+  text += format("  build    %9.1f ms  %s on %s, SAH cost %.2f, depth %u\n", build.build_ms.median,
+                 build.builder.c_str(), build.device.c_str(), build.quality.sah, build.quality.depth);
+  if (report.walks_wide)
+    text += format("  wide     %9.1f ms  the tree with eight children a node\n", report.wide_ms);
+  text += format("  trace    %9.1f ms  %ux%u, %u spp, %.2f Mrays/s on the %s\n", report.trace_ms,
+                 frame.trace.width, frame.trace.height, frame.trace.samples, mrays_per_s(report),
+                 around.tracer.c_str());
+  text += format("  write    %9.1f ms\n", around.write_ms);
+  if (!report.kernels.rows.empty() && !build.kernels.rows.empty()) text += text_of(build.kernels);
+  if (!report.kernels.rows.empty()) text += text_of(report.kernels);
+  return text + "picture: " + around.output + "\n";
+}
+
+}  // namespace coppice

@@ -1,0 +1,173 @@
+#include "measure/measure_frame.h"
+
+#include <algorithm>
+
+#include "measure/measure_build.h"
+#include "measure/progress.h"
+#include "measure/trace_events.h"
+#include "pipeline/bounded_submits.h"
+#include "pipeline/trace_pieces.h"
+#include "render/frame.h"
+
+namespace coppice {
+
+namespace {
+
+// What a frame submits before its trace: each in one submit, without steps where there is nothing to do.
+struct TreeSteps {
+  std::vector<Step> build;  // by a builder on the device
+  std::vector<Step> wide;   // if the wide tree is walked
+};
+
+TreeSteps tree_steps(const GpuExecutor& executor, const FramePlan& plan) {
+  Chain build = executor.chain(), wide = executor.chain();
+  append_frame_build(build, plan);
+  append_frame_wide(wide, plan);
+  return {build.steps(), wide.steps()};
+}
+
+// Builds the tree, and traces a little in the middle of the picture: the first use of a kernel compiles it,
+// and how fast the device is is seen. Returns the pace of the frames to come.
+Pace warm_up(GpuExecutor& executor, const TreeSteps& steps, const FramePlan& plan,
+             const DeviceProperties& device) {
+  for (const std::vector<Step>* const part : {&steps.build, &steps.wide}) {
+    if (!part->empty()) executor.record(*part).submit_and_wait(piece_limit_seconds);
+  }
+  TracePlan trace = plan.trace;
+  trace.options.samples = 1;
+  const auto middle = static_cast<std::uint32_t>(trace.image.count / 2 / RANGE_RAYS * RANGE_RAYS);
+  TracePlan few = trace;
+  few.image.count = std::min<std::uint64_t>(trace.image.count, middle + RANGE_RAYS);
+  const Pace unknown(submit_target_ms(device), first_work(trace.options));
+  Pace compiling = unknown, pace = unknown;
+  submit_pieces(executor, TracePieces(plan.tree, few, middle), compiling, Timestamps::total, [](auto&&) {});
+  TracePieces pieces(plan.tree, trace, middle);
+  const double enough_ms = pace.target_ms() / 20;
+  for (double ms = 0; !pieces.done() && ms < enough_ms;)
+    ms += submit_piece(executor, pieces, pace, Timestamps::total).times.wall_ms;
+  return pace;
+}
+
+// A bar over all pieces of several traces.
+class TraceProgress {
+ public:
+  TraceProgress(std::uint64_t work, std::uint32_t traces)
+      : percent_per_work_(100 / (static_cast<double>(work) * traces)), bar_("tracing", 100) {}
+  void add(std::uint64_t work) {
+    percent_ = std::min(percent_ + static_cast<double>(work) * percent_per_work_, 100.0);
+    bar_.advance(static_cast<std::uint32_t>(percent_));
+  }
+
+ private:
+  double percent_per_work_, percent_ = 0;
+  Progress bar_;
+};
+
+// Nothing is read back in between but times.
+void measure_frames(GpuExecutor& executor, const TreeSteps& steps, const FramePlan& plan, Pace& pace,
+                    std::uint32_t runs, TraceProgress& progress, FrameReport& report) {
+  Recorder build = executor.record(steps.build), wide = executor.record(steps.wide);
+  std::vector<double> build_ms, wide_ms, trace_ms, wall_ms;
+  for (std::uint32_t run = 0; run < runs; ++run) {
+    if (plan.build) {
+      const Recorder::Times times = build.submit_and_wait(piece_limit_seconds);
+      build_ms.push_back(times.total_ms);
+      wall_ms.push_back(times.wall_ms);
+    }
+    if (plan.wide) wide_ms.push_back(wide.submit_and_wait(piece_limit_seconds).total_ms);
+    double& ms = trace_ms.emplace_back(0);
+    submit_pieces(executor, TracePieces(plan.tree, plan.trace), pace, Timestamps::total,
+                  [&](const SubmittedPiece& piece) {
+                    ms += piece.times.total_ms;
+                    progress.add(piece.work);
+                  });
+    check_state(executor, plan.tree);
+  }
+  report.trace_ms = spread_of(trace_ms).median;
+  if (plan.wide) report.wide_ms = spread_of(wide_ms).median;
+  if (!plan.build) return;
+  report.build.build_ms = spread_of(build_ms);
+  report.build.wall_ms = spread_of(wall_ms);
+  report.build.runs = runs;
+}
+
+RunCounts counts_of_tree(const GpuExecutor& executor, const FramePlan& plan) {
+  const WidePlan* const wide = plan.wide ? &*plan.wide : nullptr;
+  if (plan.build) return counts_of_build(executor, *plan.build, wide);
+  RunCounts counts;
+  counts.active_count = executor.read(plan.tree.state)[0].active_count;
+  if (wide) count_wide(executor, plan.tree, *wide, counts);
+  return counts;
+}
+
+// The frame once more, with a timestamp after each dispatch.
+void split_kernels(CheckedDevice& device, GpuExecutor& executor, const TreeSteps& steps,
+                   const FramePlan& plan, Pace& pace, TraceProgress& progress,
+                   const std::string& trace_events, FrameReport& report) {
+  std::vector<Step> tree_steps = steps.build;
+  tree_steps.insert(tree_steps.end(), steps.wide.begin(), steps.wide.end());
+  const RunCounts counts = counts_of_trace(executor.read(plan.trace.counters)[0]);
+  TraceEvents events;
+  KernelSums tree_sums, sums;
+  if (!tree_steps.empty()) {
+    const KernelSplit split = split_time(executor, tree_steps, piece_limit_seconds);
+    tree_sums.add(split.steps, split.times, counts_of_tree(executor, plan));
+    events.add(split);
+  }
+  submit_pieces(executor, TracePieces(plan.tree, plan.trace), pace, Timestamps::every_step,
+                [&](const SubmittedPiece& piece) {
+                  sums.add(piece.steps, piece.times, counts);
+                  if (!trace_events.empty()) events.add(piece.steps, piece.times);
+                  progress.add(piece.work);
+                });
+  const auto limit = find_copy_limit(device, std::max(tree_sums.largest_dispatch(), sums.largest_dispatch()));
+  report.kernels = kernel_table(sums, limit, report.trace_ms);
+  if (!tree_steps.empty()) {
+    const double build_ms = plan.build ? report.build.build_ms.median : 0;
+    report.build.kernels = kernel_table(tree_sums, limit, build_ms + report.wide_ms);
+  }
+  events.write(trace_events, device);
+}
+
+}  // namespace
+
+FrameReport measure_frame(CheckedDevice& device, const Scene& scene, const FrameRuns& frame) {
+  const SceneArrays arrays = scene_arrays(scene);
+  FrameReport report;
+  report.trace_device = device.properties().name + ", " + device.properties().driver;
+  report.build = report_for(frame.builder, scene, arrays.triangles, device.notes());
+  FrameOptions options{.trace = frame.trace};
+  options.trace.directional_light = scene.light.radiance != vec3(0);
+  Bvh bvh;
+  if (frame.builder.on_device()) {
+    options.build = device.build_options(frame.builder.build_options(report.build.morton_bits));
+  } else {
+    report.build = measure_cpu_build(arrays.triangles, report.build, frame.runs, bvh);
+    options.node_count = bvh.nodes.size();
+  }
+  report.walks_wide = is_wide(options.trace.walk);
+
+  Layout layout(device.properties().max_block_bytes);
+  const FramePlan plan = plan_frame(layout, arrays, options);
+  GpuExecutor executor(device.device(), layout);
+  upload_frame(executor, plan.tree, plan.trace, arrays,
+               make_film(scene, frame.camera, frame.trace.width, frame.trace.height, frame.trace.samples));
+  if (!plan.build) upload_bvh(executor, plan.tree, bvh);
+
+  const InterruptionGuard guard;
+  const TreeSteps steps = tree_steps(executor, plan);
+  Pace pace = warm_up(executor, steps, plan, device.properties());
+  TraceProgress progress(TracePieces(plan.tree, plan.trace).work(), frame.runs + frame.split);
+  measure_frames(executor, steps, plan, pace, frame.runs, progress, report);
+  const RunCounts counts = counts_of_trace(executor.read(plan.trace.counters)[0]);
+  report.rays = counts.rays;
+  report.hits = counts.hits;
+  report.steps = counts.steps;
+  report.image = executor.read(plan.trace.image);
+  report.build.device_bytes = device_bytes(layout);
+  if (plan.build) describe_device_build(device, executor, *plan.build, report.build);
+  if (frame.split) split_kernels(device, executor, steps, plan, pace, progress, frame.trace_events, report);
+  return report;
+}
+
+}  // namespace coppice

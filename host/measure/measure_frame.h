@@ -1,0 +1,45 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "measure/build_report.h"
+#include "measure/builder_choice.h"
+#include "pipeline/checked_device.h"
+#include "pipeline/trace.h"
+#include "scene/scene.h"
+
+namespace coppice {
+
+// How a frame is measured.
+struct FrameRuns {
+  BuilderChoice builder{};
+  TraceOptions trace{};          // of a trace on a device: what the device asks of it, too
+  std::vector<double> camera{};  // see given_view; empty: the scene's
+  std::uint32_t runs = 1;        // the whole frame so many times
+  bool split = false;            // once more, for the times of kernels and the file of trace events
+  std::string trace_events{};    // a file; empty: none
+};
+
+struct FrameReport {
+  BuildReport build;
+  double wide_ms = 0;  // of the conversion to wide nodes; 0 where the binary tree is walked
+  double trace_ms = 0;
+  std::uint64_t rays = 0, hits = 0, steps = 0;
+  std::string trace_device;  // name and driver
+  bool walks_wide = false;
+  KernelTable kernels;      // of the trace, on a device
+  std::vector<uint> image;  // RGBA8
+};
+
+// Builds in one submit and traces in as many as keep each short, with nothing but times read back in between;
+// with a CPU builder its tree is uploaded before. Throws Interrupted on SIGINT or SIGTERM between two
+// submits.
+FrameReport measure_frame(CheckedDevice& device, const Scene& scene, const FrameRuns& frame);
+
+// Traces by the independent CPU tracer; shades by the twins. With a builder on the device `device` builds the
+// tree. Throws Interrupted as well.
+FrameReport measure_host_frame(CheckedDevice* device, const Scene& scene, const FrameRuns& frame,
+                               const Note& note);
+
+}  // namespace coppice

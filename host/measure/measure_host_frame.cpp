@@ -1,0 +1,87 @@
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+
+#include "analysis/cpu_tracer.h"
+#include "measure/measure_build.h"
+#include "measure/measure_frame.h"
+#include "measure/progress.h"
+#include "pipeline/interruption.h"
+#include "pipeline/pace.h"
+#include "pipeline/trace_pieces.h"
+#include "render/frame.h"
+#include "stages/cpu_executor.h"
+#include "stages/stages.h"
+
+namespace coppice {
+
+namespace {
+
+// The device's chain, in pieces, with the independent tracer in the place of its tracer.
+void trace_on_host(CpuExecutor& executor, const TreeSlots& tree, const TracePlan& trace, const Bvh& bvh,
+                   std::span<const Triangle> triangles, FrameReport& report) {
+  // So that Ctrl-C is heard soon.
+  constexpr double target_ms = 200;
+  Pace pace(target_ms, bvh.nodes.empty() ? (1u << 20) / (triangles.size() + 1) + 1 : 256);
+  const InterruptionGuard guard;
+  TracePieces pieces(tree, trace);
+  Progress progress("tracing", 100);
+  const auto start = std::chrono::steady_clock::now();
+  while (!pieces.done()) {
+    throw_if_interrupted();
+    Chain chain = executor.chain();
+    const auto piece_start = std::chrono::steady_clock::now();
+    const std::uint64_t work = pieces.append(chain, pace.work());
+    for (const Step& step : chain.steps()) {
+      const TraceClosestArgs* const closest = args_of(step, stages::trace_closest);
+      if (!closest) {
+        executor.run(step);
+        continue;
+      }
+      const TraceClosestArgs& args = *closest;
+      const std::span<const Ray> rays(&args.rays[0], args.ray_count);
+      const std::span<Hit> hits(&args.hits[0], args.ray_count);
+      trace_all(bvh.nodes, triangles, rays, hits);
+      report.rays += args.ray_count;
+      report.hits += std::ranges::count_if(hits, [](const Hit& hit) { return hit.triangle != NO_TRIANGLE; });
+    }
+    pace.note(
+        work,
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - piece_start).count());
+    progress.advance(static_cast<std::uint32_t>(100 * report.rays / pieces.work()));
+  }
+  throw_if_interrupted();
+  report.trace_ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+FrameReport measure_host_frame(CheckedDevice* device, const Scene& scene, const FrameRuns& frame,
+                               const Note& note) {
+  const SceneArrays arrays = scene_arrays(scene);
+  FrameReport report;
+  report.trace_device = "host CPU";
+  report.build = report_for(frame.builder, scene, arrays.triangles, note);
+  Bvh bvh;
+  if (frame.builder.on_device()) {
+    const BuildOptions options = device->build_options(frame.builder.build_options(report.build.morton_bits));
+    const BuildRuns runs{.runs = frame.runs, .trace_events = frame.trace_events};
+    report.build = measure_device_build(*device, arrays.triangles, options, runs, report.build, &bvh);
+  } else {
+    report.build = measure_cpu_build(arrays.triangles, report.build, frame.runs, bvh);
+  }
+
+  Layout layout(~std::uint64_t{0});
+  FrameOptions options{.trace = frame.trace};
+  options.trace.walk = Walk::binary;  // in its place traces the CPU tracer, which has the tree
+  const FramePlan plan = plan_frame(layout, arrays, options);
+  CpuExecutor executor(layout);
+  upload_frame(executor, plan.tree, plan.trace, arrays,
+               make_film(scene, frame.camera, frame.trace.width, frame.trace.height, frame.trace.samples));
+  trace_on_host(executor, plan.tree, plan.trace, bvh, arrays.triangles, report);
+  report.image = executor.read(plan.trace.image);
+  return report;
+}
+
+}  // namespace coppice

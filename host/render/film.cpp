@@ -1,0 +1,49 @@
+#include "render/film.h"
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/trigonometric.hpp>
+#include <glm/vec3.hpp>
+#include <limits>
+
+namespace coppice {
+
+View choose_view(const Scene& scene, std::span<const double> given, std::uint32_t width,
+                 std::uint32_t height) {
+  if (!given.empty()) return given_view(scene, given);
+  return view_of(frame_scene(scene, static_cast<float>(width) / static_cast<float>(height)));
+}
+
+Film make_film(const Scene& scene, std::span<const double> given, std::uint32_t width, std::uint32_t height,
+               std::uint32_t samples) {
+  const View view = choose_view(scene, given, width, height);
+  const double half_height = std::tan(glm::radians(view.vertical_fov_degrees) / 2);
+  const double half_width = half_height * width / height;
+  Film film{};
+  film.position = glm::clamp(view.eye, -double{FLT_MAX}, double{FLT_MAX});
+  film.width = width;
+  film.height = height;
+  film.samples = samples;
+  film.corner = view.forward - view.right * half_width - view.down * half_height;
+  film.right = view.right * (2 * half_width / width);
+  film.down = view.down * (2 * half_height / height);
+  return film;
+}
+
+std::vector<Ray> rays_through(const Film& film) {
+  std::vector<Ray> rays;
+  for (std::uint32_t top = 0; top < film.height; top += FILM_STRIP) {
+    for (std::uint32_t x = 0; x < film.width; ++x) {
+      for (std::uint32_t y = top; y < std::min(top + FILM_STRIP, film.height); ++y) {
+        const vec3 direction = film.corner + film.right * (static_cast<float>(x) + 0.5f) +
+                               film.down * (static_cast<float>(y) + 0.5f);
+        rays.push_back({film.position, 0, direction, std::numeric_limits<float>::infinity()});
+      }
+    }
+  }
+  return rays;
+}
+
+}  // namespace coppice

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "interface/trace.h"
+#include "scene/scene.h"
+#include "scene/view.h"
+
+namespace coppice {
+
+// The view that `camera` gives (see given_view), or where it is empty the scene's own or one that frames it.
+View choose_view(const Scene& scene, std::span<const double> camera, std::uint32_t width,
+                 std::uint32_t height);
+
+// Of that view.
+Film make_film(const Scene& scene, std::span<const double> camera, std::uint32_t width, std::uint32_t height,
+               std::uint32_t samples);
+
+// A ray through the centre of each pixel, in the order of FILM_STRIP.
+std::vector<Ray> rays_through(const Film& film);
+
+}  // namespace coppice

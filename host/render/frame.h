@@ -1,0 +1,64 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "builders/bvh.h"
+#include "pipeline/trace.h"
+#include "pipeline/wide.h"
+#include "render/film.h"
+#include "render/scene_arrays.h"
+
+namespace coppice {
+
+// A frame: a tree, built on the device or handed over by the host, and a picture traced through it.
+struct FrameOptions {
+  std::optional<BuildOptions> build{};  // none: the tree is uploaded
+  std::uint64_t node_count = 0;         // of the uploaded tree
+  TraceOptions trace;                   // and whether the tree is converted to wide nodes
+};
+
+struct FramePlan {
+  std::optional<BuildPlan> build;
+  std::optional<WidePlan> wide;
+  TreeSlots tree;
+  TracePlan trace;
+};
+
+// Throws LayoutError if a slot does not fit a block.
+FramePlan plan_frame(Layout& layout, const SceneArrays& scene, const FrameOptions& options);
+
+// The parts of a frame: nothing where there is nothing to do.
+void append_frame_build(Chain& chain, const FramePlan& plan);
+void append_frame_wide(Chain& chain, const FramePlan& plan);
+
+// All of it: triangles to picture.
+void append_frame(Chain& chain, const FramePlan& plan);
+
+// Uploads all that a build and a trace read, through any executor.
+template <class Executor>
+void upload_frame(Executor& executor, const TreeSlots& tree, const TracePlan& trace, const SceneArrays& scene,
+                  const Film& film) {
+  const auto thresholds = srgb_thresholds();
+  executor.upload(tree.triangles, std::span<const Triangle>(scene.triangles));
+  executor.upload(trace.material_index, std::span<const uint>(scene.material_index));
+  executor.upload(trace.materials, std::span<const SurfaceMaterial>(scene.materials));
+  executor.upload(trace.lighting, std::span<const Lighting>(&scene.lighting, 1));
+  executor.upload(trace.film, std::span<const Film>(&film, 1));
+  executor.upload(trace.srgb_thresholds, std::span<const uint>(thresholds));
+}
+
+// Throws DeviceError for a tree that is higher than tracers on the device take.
+void check_height(const Bvh& bvh);
+
+// Uploads a tree of the host.
+template <class Executor>
+void upload_bvh(Executor& executor, const TreeSlots& tree, const Bvh& bvh) {
+  check_height(bvh);
+  BuildState state{};
+  state.active_count = bvh.active_count;
+  executor.upload(tree.nodes, std::span<const Node>(bvh.nodes));
+  executor.upload(tree.state, std::span<const BuildState>(&state, 1));
+}
+
+}  // namespace coppice

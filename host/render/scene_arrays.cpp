@@ -1,0 +1,36 @@
+#include "render/scene_arrays.h"
+
+#include <cmath>
+
+namespace coppice {
+
+namespace {
+
+vec3 flush_to_zero(vec3 v) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::fpclassify(v[axis]) == FP_SUBNORMAL || v[axis] == 0) v[axis] = 0;
+  }
+  return v;
+}
+
+}  // namespace
+
+SceneArrays scene_arrays(const Scene& scene) {
+  SceneArrays arrays;
+  std::vector<vec3> positions;
+  positions.reserve(scene.positions.size());
+  for (const vec3& position : scene.positions) positions.push_back(flush_to_zero(position));
+  arrays.triangles.reserve(scene.indices.size());
+  for (const uvec3& corner : scene.indices) {
+    arrays.triangles.push_back({positions[corner.x], positions[corner.y], positions[corner.z]});
+  }
+  arrays.material_index = scene.material_index;
+  for (const Material& material : scene.materials) {
+    arrays.materials.push_back({material.emission + material.diffuse * scene.ambient_light,
+                                material.diffuse * scene.light.radiance});
+  }
+  arrays.lighting = {scene.light.direction, 0, vec3(0.80f, 0.87f, 0.94f), 0, vec3(0.24f, 0.45f, 0.78f), 0};
+  return arrays;
+}
+
+}  // namespace coppice

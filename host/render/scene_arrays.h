@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "interface/trace.h"
+#include "scene/scene.h"
+
+namespace coppice {
+
+// A scene as the stages take it.
+struct SceneArrays {
+  std::vector<Triangle> triangles;  // denormal coordinates and -0 as +0: what every device computes alike
+  std::vector<uint> material_index;
+  std::vector<SurfaceMaterial> materials;
+  Lighting lighting = {};
+
+  std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(triangles.size()); }
+};
+
+SceneArrays scene_arrays(const Scene& scene);
+
+}  // namespace coppice
