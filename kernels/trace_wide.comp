@@ -7,13 +7,16 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/trace.h"
+#include "lib/device_count.glsl"
 #include "lib/ray_words.glsl"
+#include "lib/search.glsl"
 #include "lib/trace_counters.glsl"
 #include "lib/trace_ray.glsl"
 
 layout(local_size_x_id = DEVICE_SUBGROUP_SIZE_ID) in;
 layout(push_constant, scalar) uniform Push { TraceWideArgs args; };
 layout(constant_id = 0) const uint TRACE_MAX_TURNS = 0xffffffffu;  // as in trace_closest
+layout(constant_id = 1) const bool TRACE_MASKED = true;            // as in trace_closest
 
 const uint TRACE_TRIANGLE_TEST = TRIANGLE_WATERTIGHT;
 const uint TRACE_BOX_TEST = BOX_ROBUST;
@@ -29,6 +32,8 @@ const uint RAYS = (TRACE_PACKET + LANES - 1u) / LANES;  // of an invocation
 TraceRay rays[RAYS];
 Hit hits[RAYS];
 uint given_triangle[RAYS];  // of the hits so far
+uint masks[RAYS];
+uint ray_count;
 uint turns = 0u;
 
 shared uvec2 stack[WIDE_MAX_HEIGHT];  // node, and its children still to be visited
@@ -113,7 +118,9 @@ uint visit(WideChildren children, RayBundle bundle, inout float farthest) {
         uint index = word & ~WIDE_LEAF;
         Triangle triangle = read_triangle(index);
         [[unroll]] for (uint r = 0u; r < RAYS; ++r) {
-          if ((meeting >> r & 1u) != 0u) intersect_triangle(rays[r], triangle, index, hits[r]);
+          if ((meeting >> r & 1u) == 0u) continue;
+          if (TRACE_MASKED && !sees(Sight(args.primitive_flags, masks[r]), index, false)) continue;
+          intersect_triangle(rays[r], triangle, index, hits[r]);
         }
         farthest = farthest_hit();
       } else {
@@ -163,10 +170,11 @@ uint ray_index(uint r) { return gl_WorkGroupID.x * TRACE_PACKET + r * LANES + la
 void prepare(uint r, Aabb scene, inout RayBundle bundle) {
   Ray given;
   Hit so_far = Hit(0.0, NO_TRIANGLE, 0.0, 0.0);
-  bool sound = ray_index(r) < args.ray_count;
+  bool sound = ray_index(r) < ray_count;
   if (sound) so_far = load_hit(args.hits, ray_index(r));
   given_triangle[r] = so_far.triangle;
   if (sound) given = load_ray(args.rays, ray_index(r));
+  if (TRACE_MASKED && sound) masks[r] = mask_of(args.ray_masks, args.ray_mask, ray_index(r));
   sound = sound && prepare_ray(given, rays[r]);
   if (sound) {
     approach_scene(scene, rays[r]);
@@ -189,12 +197,13 @@ uvec2 keep_hits() {
       store_hit(args.hits, i, so_far);
       given_triangle[r] = so_far.triangle;
     }
-    counts += uvec2(i < args.ray_count ? 1u : 0u, given_triangle[r] != NO_TRIANGLE ? 1u : 0u);
+    counts += uvec2(i < ray_count ? 1u : 0u, given_triangle[r] != NO_TRIANGLE ? 1u : 0u);
   }
   return counts;
 }
 
 void main() {
+  ray_count = counted(args.count_at, args.ray_count);
   uint visited = 0u;
   Node root = Node(vec3(0.0), 0u, vec3(0.0), 0u);
   bool has_tree = args.wide_counts.at[0].node_count != 0u;

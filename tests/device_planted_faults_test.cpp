@@ -10,6 +10,7 @@
 #include "measure/copy_limit.h"
 #include "pipeline/batch.h"
 #include "pipeline/scan.h"
+#include "pipeline/trace_any.h"
 #include "pipeline/wide.h"
 #include "render/frame.h"
 #include "scene/hard_cases.h"
@@ -64,6 +65,13 @@ Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
   const RaySlots bounced{layout.add<Ray>("bounced_rays", trace.band_rays),
                          layout.add<Hit>("bounced_hits", trace.band_rays),
                          layout.add<TraceCounters>("bounced_counters", 1)};
+  const CandidateSlots boxes{2,
+                             trace.rays,
+                             layout.add<BoxCandidate>("candidates", 2 * trace.band_rays),
+                             layout.add<uint>("candidate_counts", trace.band_rays),
+                             trace.counters,
+                             {}};
+  const AnyHitSlots any{trace.rays, layout.add<uint>("any_hits", trace.band_rays), trace.counters, {}};
   LockstepExecutor executor(device, layout);
   upload_frame(executor, build, trace, arrays, make_film(scene, {}, width, height, 1));
   auto difference = executor.run([&](Chain& chain) {
@@ -71,6 +79,8 @@ Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
     if (wide) append_wide(chain, build, *wide);
     append_trace(chain, build, trace);
     append_bounce(chain, build, trace, bounced, trace.band_rays, 1);
+    if (frame.walk != Walk::brute_force) append_any_hits(chain, build, any, trace.band_rays, trace_options);
+    append_candidates(chain, build, boxes, trace.band_rays, trace_options);
     spoil(chain.steps(), executor);
   });
   return {std::move(difference), {executor.nearly().begin(), executor.nearly().end()}};

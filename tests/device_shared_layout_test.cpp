@@ -59,6 +59,7 @@ TEST(SharedLayout, ElementsOfEverySlot) {
   EXPECT_SAME_LAYOUT(BatchTree);
   EXPECT_SAME_LAYOUT(Ray);
   EXPECT_SAME_LAYOUT(Hit);
+  EXPECT_SAME_LAYOUT(BoxCandidate);
   EXPECT_SAME_LAYOUT(Film);
   EXPECT_SAME_LAYOUT(SurfaceMaterial);
   EXPECT_SAME_LAYOUT(Lighting);
@@ -67,7 +68,7 @@ TEST(SharedLayout, ElementsOfEverySlot) {
   EXPECT_SAME_LAYOUT(WideEntry);
   EXPECT_SAME_LAYOUT(WideLevel);
   EXPECT_SAME_LAYOUT(WideCounts);
-  EXPECT_EQ(seen.size(), 17u);
+  EXPECT_EQ(seen.size(), 18u);
 }
 
 }  // namespace

@@ -44,6 +44,40 @@ bool holds(std::size_t count, Spoil spoil) {
   return compared(Nearly::hits, cpu, gpu).holds();
 }
 
+TEST(Nearly, OneAnyHitOfAThousandMayBeTheOtherOneButNotTwoAndNoOtherWord) {
+  std::vector<uint> cpu(1000);
+  for (std::size_t i = 0; i < cpu.size(); i += 3) cpu[i] = 1;
+  std::vector<uint> gpu = cpu;
+  gpu[5] ^= 1;
+  EXPECT_TRUE(compared(Nearly::any_hits, cpu, gpu).holds());
+  gpu[6] ^= 1;
+  EXPECT_FALSE(compared(Nearly::any_hits, cpu, gpu).holds());
+  gpu = cpu;
+  gpu[7] = 2;
+  EXPECT_FALSE(compared(Nearly::any_hits, cpu, gpu).holds());
+}
+
+TEST(Nearly, CandidatesMayBeSomeRoundingsOffAndFewBeOthers) {
+  std::vector<BoxCandidate> cpu;
+  for (uint i = 0; i < 1000; ++i) cpu.push_back({i, 1 + static_cast<float>(i)});
+  std::vector<BoxCandidate> gpu = cpu;
+  for (BoxCandidate& candidate : gpu) candidate.t_enter = next(next(candidate.t_enter));
+  EXPECT_TRUE(compared(Nearly::candidates, cpu, gpu).holds());
+  for (std::size_t i = 0; i < 10; ++i) gpu[i].primitive += 1;
+  EXPECT_TRUE(compared(Nearly::candidates, cpu, gpu).holds());
+  gpu[10].t_enter *= 1.001f;
+  EXPECT_FALSE(compared(Nearly::candidates, cpu, gpu).holds());
+}
+
+TEST(Nearly, OneCountOfCandidatesOfAThousandMayBeAnotherOne) {
+  const std::vector<uint> cpu(1000, 5);
+  std::vector<uint> gpu = cpu;
+  gpu[5] = 4;
+  EXPECT_TRUE(compared(Nearly::candidate_counts, cpu, gpu).holds());
+  gpu[6] = 6;
+  EXPECT_FALSE(compared(Nearly::candidate_counts, cpu, gpu).holds());
+}
+
 TEST(Nearly, HitsMayBeSomeRoundingsOff) {
   const auto some_ulps = [](Hit& hit) {
     hit.t = next(next(next(hit.t)));

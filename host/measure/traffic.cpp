@@ -172,22 +172,38 @@ Bytes shade_bytes(const ShadeArgs& args, const RunCounts& counts) {
          hits * (4 + sizeof(SurfaceMaterial) + sizeof(Triangle));
 }
 
+constexpr Bytes ray_and_hit = sizeof(Ray) + 2 * sizeof(Hit);  // the hit is read and written
+constexpr Bytes ray_and_word = sizeof(Ray) + sizeof(uint);
+
+// Of a walk that visits so much over the whole trace.
+template <class Args>
+Bytes walk_bytes(const Args& args, Bytes per_ray, Bytes visited, const RunCounts& counts) {
+  const Bytes rays = args.count_at.value ? std::min<Bytes>(args.ray_count, counts.rays) : args.ray_count;
+  return rays * per_ray + share(visited, rays, counts);
+}
+
+std::optional<Bytes> walk_bytes(const Step& step, const RunCounts& counts) {
+  const Bytes pairs = counts.steps * 2 * sizeof(Node), nodes = counts.steps * sizeof(WideNode);
+  const Bytes triangles = counts.hits * sizeof(Triangle);
+  if (const auto* a = args_of(step, stages::trace_closest))
+    return walk_bytes(*a, ray_and_hit, pairs + triangles, counts);
+  if (const auto* a = args_of(step, stages::trace_wide))
+    return walk_bytes(*a, ray_and_hit, nodes / TRACE_PACKET + triangles, counts);
+  if (const auto* a = args_of(step, stages::trace_wide_single))
+    return walk_bytes(*a, ray_and_hit, nodes + triangles, counts);
+  if (const auto* a = args_of(step, stages::trace_any))
+    return walk_bytes(*a, ray_and_word, pairs + triangles, counts);
+  if (const auto* a = args_of(step, stages::trace_wide_any))
+    return walk_bytes(*a, ray_and_word, nodes + triangles, counts);
+  // Of each ray with candidates at least one is written.
+  if (const auto* a = args_of(step, stages::trace_candidates))
+    return walk_bytes(*a, ray_and_word, pairs + counts.hits * sizeof(BoxCandidate), counts);
+  return std::nullopt;
+}
+
 std::optional<Bytes> trace_bytes(const Step& step, const RunCounts& counts) {
-  constexpr Bytes ray_and_hit = sizeof(Ray) + 2 * sizeof(Hit);  // the hit is read and written
   if (const auto* a = args_of(step, stages::camera_rays))
     return Bytes{a->ray_count} * (sizeof(Ray) + sizeof(Hit));
-  if (const auto* a = args_of(step, stages::trace_closest)) {
-    const Bytes walked = counts.steps * 2 * sizeof(Node) + counts.hits * sizeof(Triangle);
-    return a->ray_count * ray_and_hit + share(walked, a->ray_count, counts);
-  }
-  if (const auto* a = args_of(step, stages::trace_wide)) {
-    const Bytes walked = counts.steps / TRACE_PACKET * sizeof(WideNode) + counts.hits * sizeof(Triangle);
-    return a->ray_count * ray_and_hit + share(walked, a->ray_count, counts);
-  }
-  if (const auto* a = args_of(step, stages::trace_wide_single)) {
-    const Bytes walked = counts.steps * sizeof(WideNode) + counts.hits * sizeof(Triangle);
-    return a->ray_count * ray_and_hit + share(walked, a->ray_count, counts);
-  }
   if (const auto* a = args_of(step, stages::trace_brute_force))
     return a->ray_count * ray_and_hit + a->triangle_count * sizeof(Triangle);
   if (const auto* a = args_of(step, stages::bounce_rays))
@@ -195,7 +211,7 @@ std::optional<Bytes> trace_bytes(const Step& step, const RunCounts& counts) {
            share(counts.hits, a->ray_count, counts) * sizeof(Triangle);
   if (const auto* a = args_of(step, stages::shade)) return shade_bytes(*a, counts);
   if (const auto* a = args_of(step, stages::resolve)) return Bytes{a->ray_count} * (sizeof(vec3) + 4);
-  return std::nullopt;
+  return walk_bytes(step, counts);
 }
 
 }  // namespace

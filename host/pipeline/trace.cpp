@@ -21,13 +21,20 @@ void append_walk(Chain& chain, const TreeSlots& tree, const RaySlots& slots, con
   const auto rays = chain.at(slots.rays, range.first);
   const auto hits = chain.at(slots.hits, range.first);
   const auto counters = chain.at(slots.counters);
+  const RayFilter& filter = slots.filter;
+  if (range.first != 0 && filter.count_at.count != 0)
+    throw std::invalid_argument("a count on the device is of all rays, not of a range");
+  const auto flags = address_or_null(chain, filter.primitive_flags);
+  const auto masks = address_or_null(chain, filter.ray_masks, range.first);
+  const auto count_at = address_or_null(chain, filter.count_at);
   if (!is_wide(options.walk)) {
-    chain.run(stages::trace_closest,
-              {chain.at(tree.nodes), triangles, rays, hits, counters, chain.at(tree.state), range.count,
-               options.stack_entries, options.triangle_test, options.box_test},
-              groups_of(range.count, TRACE_GROUP),
-              {options.max_turns, options.visits_per_turn, options.stack_entries, options.triangle_test,
-               options.box_test});
+    chain.run(
+        stages::trace_closest,
+        {chain.at(tree.nodes), triangles, rays, hits, counters, chain.at(tree.state), flags, masks, count_at,
+         range.count, filter.ray_mask, options.stack_entries, options.triangle_test, options.box_test, 0},
+        groups_of(range.count, TRACE_GROUP),
+        {options.max_turns, options.visits_per_turn, options.stack_entries, options.triangle_test,
+         options.box_test, filter.masks()});
     return;
   }
   if (!can_trace_wide(options))
@@ -40,12 +47,17 @@ void append_walk(Chain& chain, const TreeSlots& tree, const RaySlots& slots, con
                            hits,
                            counters,
                            chain.at(tree.state),
+                           flags,
+                           masks,
+                           count_at,
                            range.count,
-                           0};
+                           filter.ray_mask};
   if (options.walk == Walk::wide_packets) {
-    chain.run(stages::trace_wide, args, groups_of(range.count, TRACE_PACKET), {options.max_turns});
+    chain.run(stages::trace_wide, args, groups_of(range.count, TRACE_PACKET),
+              {options.max_turns, filter.masks()});
   } else {
-    chain.run(stages::trace_wide_single, args, groups_of(range.count, TRACE_BLOCK), {options.max_turns});
+    chain.run(stages::trace_wide_single, args, groups_of(range.count, TRACE_BLOCK),
+              {options.max_turns, filter.masks()});
   }
 }
 
@@ -80,6 +92,8 @@ bool has_closest_hits(const TreeSlots& tree, const RayRange& range, const TraceO
 
 std::uint64_t append_closest_hits(Chain& chain, const TreeSlots& tree, const RaySlots& slots, RayRange& range,
                                   const TraceOptions& options, std::uint64_t work) {
+  if (options.walk == Walk::brute_force && (slots.filter.masks() || slots.filter.count_at.count != 0))
+    throw std::invalid_argument("brute force takes no masks and no count on the device");
   if (options.walk != Walk::brute_force) {
     append_walk(chain, tree, slots, range, options);
     range.next_triangle = std::max(tree.triangle_count, 1u);

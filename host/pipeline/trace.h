@@ -5,6 +5,7 @@
 
 #include "interface/trace.h"
 #include "pipeline/build.h"
+#include "pipeline/ray_filter.h"
 #include "pipeline/walk.h"
 
 namespace coppice {
@@ -33,6 +34,7 @@ struct RaySlots {
   Slot<Ray> rays;
   Slot<Hit> hits;
   Slot<TraceCounters> counters;
+  RayFilter filter{};
 };
 
 // What the counters of a trace say.
@@ -61,7 +63,8 @@ TracePlan plan_trace(Layout& layout, const TreeSlots& tree, std::uint32_t materi
                      const TraceOptions& options);
 
 // The closest hits of the first `ray_count` rays, improved in place. Of the options the size of the picture,
-// the samples and the light do not matter. Throws std::invalid_argument for a wide tree with another test.
+// the samples and the light do not matter. Throws std::invalid_argument for a wide tree with another test,
+// and for a filter with brute force.
 void append_closest_hits(Chain& chain, const TreeSlots& tree, const RaySlots& slots, std::uint32_t ray_count,
                          const TraceOptions& options);
 
@@ -73,7 +76,9 @@ struct RayRange {
 
 // As much of the same, for the rays of a range, as `work` allows, though at least one step. Returns the work
 // of what was appended: in rays, by brute force in tests of triangles. Ranges that begin and end at multiples
-// of RANGE_RAYS (the last rays excepted) give the same hits and counters as all rays at once.
+// of RANGE_RAYS (the last rays excepted) give the same hits and counters as all rays at once. Throws
+// std::invalid_argument for a filter with brute force, and for a range that does not begin at 0 with a count
+// on the device.
 std::uint64_t append_closest_hits(Chain& chain, const TreeSlots& tree, const RaySlots& slots, RayRange& range,
                                   const TraceOptions& options, std::uint64_t work);
 bool has_closest_hits(const TreeSlots& tree, const RayRange& range, const TraceOptions& options);

@@ -54,6 +54,28 @@ Verdict judge(const Hit& cpu, const Hit& gpu, NearlyEqual& result) {
              : Verdict::beyond;
 }
 
+struct AnyHit {
+  uint word;
+};
+
+Verdict judge(const AnyHit& cpu, const AnyHit& gpu, NearlyEqual& result) {
+  if (cpu.word > 1 || gpu.word > 1) result.beyond_allowed = 0;
+  return Verdict::beyond;
+}
+
+Verdict judge(const BoxCandidate& cpu, const BoxCandidate& gpu, NearlyEqual&) {
+  const float scale = std::max(std::abs(cpu.t_enter), std::abs(gpu.t_enter));
+  return cpu.primitive == gpu.primitive && within(cpu.t_enter, gpu.t_enter, t_tolerance * scale)
+             ? Verdict::within
+             : Verdict::beyond;
+}
+
+struct CandidateCount {
+  uint word;
+};
+
+Verdict judge(const CandidateCount&, const CandidateCount&, NearlyEqual&) { return Verdict::beyond; }
+
 bool within(uvec2 a, uvec2 b, std::uint64_t limit) {
   const std::uint64_t x = std::uint64_t{a.y} << 32 | a.x, y = std::uint64_t{b.y} << 32 | b.x;
   return (x > y ? x - y : y - x) <= limit;
@@ -121,6 +143,12 @@ NearlyEqual compare_nearly(Nearly like, std::span<const std::byte> cpu, std::spa
       return compare<Ray>(cpu, gpu, none);
     case Nearly::hits:
       return compare<Hit>(cpu, gpu, thousandth);
+    case Nearly::any_hits:
+      return compare<AnyHit>(cpu, gpu, thousandth);
+    case Nearly::candidates:
+      return compare<BoxCandidate>(cpu, gpu, hundredth);
+    case Nearly::candidate_counts:
+      return compare<CandidateCount>(cpu, gpu, thousandth);
     case Nearly::counters:
       return compare<TraceCounters>(cpu, gpu, none);
     case Nearly::radiance:

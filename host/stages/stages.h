@@ -42,6 +42,9 @@
   STAGE(trace_closest, TraceClosestArgs, TraceClosestConstants, nearly_hits)           \
   STAGE(trace_wide, TraceWideArgs, TraceWideConstants, nearly_hits)                    \
   STAGE(trace_wide_single, TraceWideArgs, TraceWideConstants, nearly_hits)             \
+  STAGE(trace_any, TraceAnyArgs, TraceClosestConstants, nearly_any_hits)               \
+  STAGE(trace_wide_any, TraceWideAnyArgs, TraceWideConstants, nearly_any_hits)         \
+  STAGE(trace_candidates, TraceCandidatesArgs, TraceCandidatesConstants, nearly_boxes) \
   STAGE(trace_brute_force, TraceBruteForceArgs, TraceBruteForceConstants, nearly_hits) \
   STAGE(bounce_rays, BounceRaysArgs, NoConstants, nearly_bounced)                      \
   STAGE(shade, ShadeArgs, ShadeConstants, nearly_radiance)                             \
@@ -56,6 +59,11 @@ namespace stages {
 inline constexpr std::span<const NearlySlot> exactly;
 inline constexpr NearlySlot nearly_rays[] = {{"rays", Nearly::rays}};
 inline constexpr NearlySlot nearly_hits[] = {{"hits", Nearly::hits}, {"counters", Nearly::counters}};
+inline constexpr NearlySlot nearly_any_hits[] = {{"any_hits", Nearly::any_hits},
+                                                 {"counters", Nearly::counters}};
+inline constexpr NearlySlot nearly_boxes[] = {{"candidates", Nearly::candidates},
+                                              {"candidate_counts", Nearly::candidate_counts},
+                                              {"counters", Nearly::counters}};
 inline constexpr NearlySlot nearly_bounced[] = {{"bounced_rays", Nearly::rays}};
 inline constexpr NearlySlot nearly_radiance[] = {{"radiance", Nearly::radiance}};
 inline constexpr NearlySlot nearly_image[] = {{"image", Nearly::image}};

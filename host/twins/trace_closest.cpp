@@ -2,7 +2,9 @@
 #include <vector>
 
 #include "interface/trace.h"
+#include "twins/device_count.h"
 #include "twins/intersect.h"
+#include "twins/sight.h"
 #include "twins/trace_counts.h"
 
 namespace coppice::twins {
@@ -15,13 +17,14 @@ struct PairVisit {
 };
 
 // Depth-first, nearer child first. Returns how many pairs of children it visited.
-uint trace(const TraceClosestArgs& args, const TraceRay& ray, Hit& hit) {
+uint trace(const TraceClosestArgs& args, const TraceRay& ray, const Sight& sight, Hit& hit) {
   std::vector<PairVisit> stack;
   const auto meet = [&](const Node& child) {
     float enter;
     if (!ray_meets_box(ray, child.box_min, child.box_max, args.box_test, hit.t, enter)) return false;
     if (child.height == 0) {
-      ray_meets_triangle(ray, args.triangles[child.child], child.child, args.triangle_test, hit);
+      if (sight.sees(child.child))
+        ray_meets_triangle(ray, args.triangles[child.child], child.child, args.triangle_test, hit);
       return false;
     }
     stack.push_back({enter, child.child});
@@ -55,13 +58,14 @@ void trace_closest(const TraceClosestArgs& args) {
     args.state[0].error_word |= ERROR_TREE_TOO_DEEP;
     return;
   }
-  for (uint i = 0; i < args.ray_count; ++i) {
+  const uint ray_count = counted(args.count_at, args.ray_count);
+  for (uint i = 0; i < ray_count; ++i) {
     TraceRay ray(args.rays[i]);
     if (!empty && ray.is_sound) {
       const Node& root = args.nodes[0];
       ray.approach(root.box_min, root.box_max);
       Hit hit = ray.prepared(args.hits[i]);
-      count_into(counters.steps, trace(args, ray, hit));
+      count_into(counters.steps, trace(args, ray, Sight(args, i), hit));
       ray.keep(hit, args.hits[i]);
     }
     count_into(counters.rays, 1);

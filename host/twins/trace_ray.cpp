@@ -74,7 +74,7 @@ Hit TraceRay::prepared(const Hit& given) const {
 
 void TraceRay::keep(const Hit& hit, Hit& so_far) const {
   if (hit.triangle == so_far.triangle) return;
-  const float t = (hit.t + moved_) * scale_;
+  const float t = given_t(hit.t);
   if (std::isinf(t)) return;
   so_far = {std::min(std::max(t, given_.t_min), so_far.t), hit.triangle, hit.u, hit.v};
 }

@@ -15,6 +15,8 @@ class TraceRay {
   void approach(const vec3& box_min, const vec3& box_max);
 
   Hit prepared(const Hit& given) const;
+  // What a t of the prepared ray is for the ray as given; may be infinite.
+  float given_t(float t) const { return (t + moved_) * scale_; }
   // Replaces `so_far`, a hit of the ray as given, by `hit`, one of the prepared ray, unless they are the
   // same.
   void keep(const Hit& hit, Hit& so_far) const;

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "interface/trace.h"
+#include "twins/device_count.h"
 #include "twins/intersect.h"
+#include "twins/sight.h"
 #include "twins/trace_counts.h"
 
 namespace coppice::twins {
@@ -97,8 +99,9 @@ class Packet {
  public:
   explicit Packet(const TraceWideArgs& args) : args_(args) {}
 
-  void add(const TraceRay& ray, const Hit& hit) {
+  void add(const TraceRay& ray, const Sight& sight, const Hit& hit) {
     rays_.push_back(ray);
+    sights_.push_back(sight);
     hits_.push_back(hit);
     bundle_.add(ray);
   }
@@ -154,13 +157,15 @@ class Packet {
         continue;
       }
       for (std::size_t i = 0; i < rays_.size(); ++i)
-        ray_meets_triangle(rays_[i], args_.triangles[triangle], triangle, TRIANGLE_WATERTIGHT, hits_[i]);
+        if (sights_[i].sees(triangle))
+          ray_meets_triangle(rays_[i], args_.triangles[triangle], triangle, TRIANGLE_WATERTIGHT, hits_[i]);
     }
     return nodes;
   }
 
   const TraceWideArgs& args_;
   std::vector<TraceRay> rays_;
+  std::vector<Sight> sights_;
   std::vector<Hit> hits_;
   Bundle bundle_;
 };
@@ -174,7 +179,7 @@ uint trace_packet(const TraceWideArgs& args, uint first, uint count) {
     if (!ray.is_sound) continue;
     const Node& root = args.nodes[0];
     ray.approach(root.box_min, root.box_max);
-    packet.add(ray, ray.prepared(args.hits[i]));
+    packet.add(ray, Sight(args, i), ray.prepared(args.hits[i]));
     indices.push_back(i);
   }
   const uint visited = packet.trace();
@@ -187,8 +192,9 @@ uint trace_packet(const TraceWideArgs& args, uint first, uint count) {
 
 void trace_wide(const TraceWideArgs& args) {
   TraceCounters& counters = args.counters[0];
-  for (uint first = 0; first < args.ray_count; first += TRACE_PACKET) {
-    const uint count = std::min(TRACE_PACKET, args.ray_count - first);
+  const uint ray_count = counted(args.count_at, args.ray_count);
+  for (uint first = 0; first < ray_count; first += TRACE_PACKET) {
+    const uint count = std::min(TRACE_PACKET, ray_count - first);
     if (args.wide_counts[0].node_count != 0)
       count_into(counters.steps, trace_packet(args, first, count) * count);
     count_into(counters.rays, count);

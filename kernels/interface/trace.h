@@ -15,6 +15,11 @@ const uint TRACE_STACK_LIMIT = 256;    // most entries of a traversal stack
 const uint BRUTE_FORCE_SLICE = 16384;  // triangles one dispatch tests, below old lavapipe's loop limit
 const uint NO_TRIANGLE = 0xffffffffu;
 
+// A word of flags a primitive. A ray sees a primitive where the masks of both have a bit in common.
+const uint PRIMITIVE_MASK = 0xffu;           // of both; a ray's bits beyond them do not matter
+const uint PRIMITIVE_NOT_OPAQUE = 0x100u;    // never ends a ray of an any hit
+const uint PRIMITIVE_FLAGS_DEFAULT = 0xffu;  // where there are no words of flags
+
 // Which tests a trace uses; both in the arguments and as specialization constants.
 const uint TRIANGLE_FAST = 0;        // Moller and Trumbore 1997
 const uint TRIANGLE_WATERTIGHT = 1;  // Woop, Benthin and Wald 2013
@@ -36,6 +41,12 @@ struct Hit {
   float t;        // t_max of the ray for a miss
   uint triangle;  // NO_TRIANGLE for a miss
   float u, v;     // barycentric coordinates of corners b and c
+};
+
+// A leaf whose box a ray meets.
+struct BoxCandidate {
+  uint primitive;
+  float t_enter;  // where the ray enters the box, as widened by the robust test; at least t_min
 };
 
 // Rays of a picture come in strips of so many rows (the last may have fewer), from left to right, in each
@@ -79,6 +90,7 @@ struct TraceCounters {
 
 INTERFACE_BUFFER(RayBuffer, Ray, 16)
 INTERFACE_BUFFER(HitBuffer, Hit, 16)
+INTERFACE_BUFFER(BoxCandidateBuffer, BoxCandidate, 8)
 INTERFACE_BUFFER(FilmBuffer, Film, 16)
 INTERFACE_BUFFER(SurfaceMaterialBuffer, SurfaceMaterial, 8)
 INTERFACE_BUFFER(LightingBuffer, Lighting, 16)
@@ -95,6 +107,9 @@ struct CameraRaysArgs {
   uint padding;
 };
 
+// Rays of a trace: `ray_count`, or where there is a `count_at` what its word says, if that is less; no others
+// are looked at. A ray's mask is `ray_mask` or, where there are `ray_masks`, what it has in common with its
+// word there; the closest hit is the closest one on a primitive that the ray sees, opaque or not.
 struct TraceClosestArgs {
   NodeBuffer nodes;
   TriangleBuffer triangles;
@@ -102,10 +117,15 @@ struct TraceClosestArgs {
   HitBuffer hits;  // read and improved
   TraceCountersBuffer counters;
   BuildStateBuffer state;
+  UintBuffer primitive_flags;  // one a primitive; null: PRIMITIVE_FLAGS_DEFAULT
+  UintBuffer ray_masks;        // one a ray; may be null
+  UintBuffer count_at;         // may be null
   uint ray_count;
+  uint ray_mask;
   uint stack_entries;  // a tree of greater height is refused (ERROR_TREE_TOO_DEEP)
   uint triangle_test;  // TRIANGLE_
   uint box_test;       // BOX_
+  uint padding;
 };
 
 // Watertight and robust; the hits of these tests do not depend on the order of traversal.
@@ -118,8 +138,70 @@ struct TraceWideArgs {
   HitBuffer hits;  // read and improved
   TraceCountersBuffer counters;
   BuildStateBuffer state;
+  UintBuffer primitive_flags;  // this and what follows as in TraceClosestArgs
+  UintBuffer ray_masks;
+  UintBuffer count_at;
   uint ray_count;
+  uint ray_mask;
+};
+
+// Any hit: for each ray whether it hits some opaque primitive that it sees, with t in [t_min, t_max]. A
+// primitive that is not opaque ends no ray, as if it were not there: who has alpha masks takes closest hits.
+// With the watertight and the robust test the answer does not depend on the order of visits; it is then,
+// without flags and masks, whether the closest hit is one.
+struct TraceAnyArgs {
+  NodeBuffer nodes;
+  TriangleBuffer triangles;
+  RayBuffer rays;
+  UintBuffer any_hits;  // out, a word a ray: 1 or 0
+  TraceCountersBuffer counters;
+  BuildStateBuffer state;
+  UintBuffer primitive_flags;  // this and what follows as in TraceClosestArgs
+  UintBuffer ray_masks;
+  UintBuffer count_at;
+  uint ray_count;
+  uint ray_mask;
+  uint stack_entries;
+  uint triangle_test;
+  uint box_test;
   uint padding;
+};
+
+// The same through a wide tree, watertight and robust.
+struct TraceWideAnyArgs {
+  WideNodeBuffer wide_nodes;
+  WideCountsBuffer wide_counts;
+  NodeBuffer nodes;
+  TriangleBuffer triangles;
+  RayBuffer rays;
+  UintBuffer any_hits;
+  TraceCountersBuffer counters;
+  BuildStateBuffer state;
+  UintBuffer primitive_flags;
+  UintBuffer ray_masks;
+  UintBuffer count_at;
+  uint ray_count;
+  uint ray_mask;
+};
+
+// The leaves that a ray sees and whose boxes it meets with t in [t_min, t_max], by the robust test: of each
+// ray as many as there are, and the `capacity` nearest ones in the order of t_enter, of equal ones the
+// smaller primitive first. Neither depends on the order of visits, nor on the internal nodes. An entry beyond
+// the range of float is none. A leaf each, where a primitive has several.
+struct TraceCandidatesArgs {
+  NodeBuffer nodes;
+  RayBuffer rays;
+  BoxCandidateBuffer candidates;  // out, `capacity` a ray; those beyond the count are not written
+  UintBuffer candidate_counts;    // out, a word a ray; may be more than the capacity
+  TraceCountersBuffer counters;   // a hit is a ray with candidates
+  BuildStateBuffer state;
+  UintBuffer primitive_flags;  // this and what follows as in TraceClosestArgs
+  UintBuffer ray_masks;
+  UintBuffer count_at;
+  uint ray_count;
+  uint ray_mask;
+  uint stack_entries;
+  uint capacity;
 };
 
 struct TraceBruteForceArgs {
@@ -174,10 +256,18 @@ struct TraceClosestConstants {
   uint stack_entries;
   uint triangle_test;
   uint box_test;
+  uint masked;  // 0: without looking every ray sees every primitive
 };
 
 struct TraceWideConstants {
   uint max_turns;
+  uint masked;
+};
+
+struct TraceCandidatesConstants {
+  uint max_turns;  // of all loops
+  uint stack_entries;
+  uint masked;
 };
 
 struct TraceBruteForceConstants {

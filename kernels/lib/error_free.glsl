@@ -2,6 +2,8 @@
 // are exact. two_sum: Knuth 1969, The Art of Computer Programming 2, 4.2.2; two_product: Dekker 1971, "A
 // Floating-Point Technique for Extending the Available Precision", with the splitting of Veltkamp. No part may over- or
 // underflow.
+#ifndef COPPICE_LIB_ERROR_FREE
+#define COPPICE_LIB_ERROR_FREE
 
 vec2 two_sum(float a, float b) {
   precise float sum = a + b;
@@ -33,3 +35,5 @@ float product_difference(float a, float b, float c, float d) {
   precise float difference = (p.x - q.x) + (p.y - q.y);
   return difference;
 }
+
+#endif

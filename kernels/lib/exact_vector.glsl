@@ -1,4 +1,6 @@
 // Products in a fixed order, without contraction.
+#ifndef COPPICE_LIB_EXACT_VECTOR
+#define COPPICE_LIB_EXACT_VECTOR
 
 vec3 exact_cross(vec3 a, vec3 b) {
   precise vec3 product = a.yzx * b.zxy - a.zxy * b.yzx;
@@ -26,3 +28,5 @@ vec3 normal_of(Triangle triangle) {
   precise vec3 edge_c = triangle.c - triangle.a;
   return unit(exact_cross(unit(edge_b), unit(edge_c)));
 }
+
+#endif

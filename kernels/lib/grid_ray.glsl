@@ -2,6 +2,9 @@
 // with one scale and one start a node and axis. Distances are t in units that bring the scene below GRID_RANGE, and not
 // negative where they matter, so they compare as integers; where t may be negative they have an offset. The bounds are
 // in docs/numerics.md, "Grids".
+#ifndef COPPICE_LIB_GRID_RAY
+#define COPPICE_LIB_GRID_RAY
+#include "trace_ray.glsl"
 
 struct GridRay {
   vec3 origin;
@@ -63,3 +66,5 @@ void prepare_grid_ray(TraceRay ray, Aabb scene, out GridRay grid) {
   grid.backward = (grid.inverse.x < 0.0 ? 0xffu : 0u) | (grid.inverse.y < 0.0 ? 0xff00u : 0u) |
                   (grid.inverse.z < 0.0 ? 0xff0000u : 0u);
 }
+
+#endif

@@ -2,6 +2,9 @@
 // rounding of this test or of the watertight triangle test loses a hit: Ize 2013, "Robust BVH Ray Traversal"; Woop,
 // Benthin and Wald 2013, section 3.3. The pad follows from the ray and from how far the box reaches from its origin, so
 // it is as small as the box is near and small. The bound is derived in docs/numerics.md.
+#ifndef COPPICE_LIB_INTERSECT_BOX
+#define COPPICE_LIB_INTERSECT_BOX
+#include "trace_ray.glsl"
 
 // A ray in the plane of a slab gives 0 * infinity; every comparison with that NaN is false and leaves the interval
 // as it was, which is what such a ray needs.
@@ -36,3 +39,5 @@ bool intersect_box(TraceRay ray, vec3 box_min, vec3 box_max, float leave, inout 
   float reach = TRACE_BOX_TEST == BOX_ROBUST ? largest(to_min, to_max) : 0.0;
   return intersect_box_within(ray, box_min, box_max, reach, leave, enter);
 }
+
+#endif

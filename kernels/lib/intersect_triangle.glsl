@@ -1,6 +1,9 @@
 // Ray and triangle, from both sides. Of equally close triangles the smallest index wins, whatever the order of tests.
-#include "lib/exact_vector.glsl"
-#include "lib/selected.glsl"
+#ifndef COPPICE_LIB_INTERSECT_TRIANGLE
+#define COPPICE_LIB_INTERSECT_TRIANGLE
+#include "exact_vector.glsl"
+#include "selected.glsl"
+#include "trace_ray.glsl"
 
 void keep_closer(TraceRay ray, float t, uint index, float u, float v, inout Hit hit) {
   if (!(t >= ray.t_min && t <= hit.t) || (t == hit.t && index >= hit.triangle)) return;
@@ -68,3 +71,5 @@ void intersect_triangle(TraceRay ray, Triangle triangle, uint index, inout Hit h
   if (TRACE_TRIANGLE_TEST == TRIANGLE_WATERTIGHT) intersect_watertight(ray, triangle, index, hit);
   else intersect_fast(ray, triangle, index, hit);
 }
+
+#endif

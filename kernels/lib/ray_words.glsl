@@ -1,4 +1,6 @@
 // Rays and hits read and written as words of 64 bits: devices that load a vector lane by lane take half as long.
+#ifndef COPPICE_LIB_RAY_WORDS
+#define COPPICE_LIB_RAY_WORDS
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer RayWordsBuffer { u64vec4 at[]; };
@@ -27,3 +29,5 @@ void store_hit(HitBuffer hits, uint i, Hit hit) {
   HitWordsBuffer(hits).at[i] = u64vec2(packUint2x32(uvec2(floatBitsToUint(hit.t), hit.triangle)),
                                        packUint2x32(floatBitsToUint(vec2(hit.u, hit.v))));
 }
+
+#endif

@@ -1,6 +1,8 @@
 // A ray made ready for the intersection tests: direction scaled by a power of two, tiny components cleared, a far
 // origin moved close to the scene. The reasons and bounds are in docs/numerics.md, "Rays".
-#include "lib/error_free.glsl"
+#ifndef COPPICE_LIB_TRACE_RAY
+#define COPPICE_LIB_TRACE_RAY
+#include "error_free.glsl"
 
 const float NEGLIGIBLE_COMPONENT = 5.42101086242752217e-20;  // 2^-64, of a direction whose largest is in [1, 4)
 const float FAR_ORIGIN = 16.0;                               // in scene sizes
@@ -104,6 +106,12 @@ Hit prepared_hit(TraceRay r, Hit hit) {
   return Hit(t, hit.triangle, hit.u, hit.v);
 }
 
+// Whether the t of a hit of the prepared ray is one of the ray as given: beyond the range of float there is no hit.
+bool is_given(TraceRay r, Hit hit) {
+  precise float t = (hit.t + r.moved) * r.scale;
+  return !isinf(t);
+}
+
 // Replaces `so_far` by a new hit of the prepared ray. The rounding of t must not carry it out of the given range; a t
 // beyond the range of float is no hit.
 void keep_given(TraceRay r, Ray given, Hit hit, inout Hit so_far) {
@@ -111,3 +119,5 @@ void keep_given(TraceRay r, Ray given, Hit hit, inout Hit so_far) {
   precise float t = (hit.t + r.moved) * r.scale;
   if (!isinf(t)) so_far = Hit(clamp(t, given.t_min, so_far.t), hit.triangle, hit.u, hit.v);
 }
+
+#endif

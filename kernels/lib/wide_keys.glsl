@@ -1,5 +1,9 @@
-// The children of a wide node that one ray meets, nearest first. Needs `args` with wide nodes, and grid_ray.glsl.
+// The children of a wide node that one ray meets, nearest first.
 // Distances may be fused or not: their room is for the roundings of both, and no bit of them reaches a hit.
+#ifndef COPPICE_LIB_WIDE_KEYS
+#define COPPICE_LIB_WIDE_KEYS
+#include "grid_ray.glsl"
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer WideWordsBuffer { u64vec4 at[]; };
 
@@ -42,8 +46,8 @@ struct NodeWords {
   u64vec4 low, high;
 };
 
-NodeWords load_node_words(uint node) {
-  WideWordsBuffer words = WideWordsBuffer(args.wide_nodes);
+NodeWords load_node_words(WideNodeBuffer nodes, uint node) {
+  WideWordsBuffer words = WideWordsBuffer(nodes);
   return NodeWords(words.at[node * 3u], words.at[node * 3u + 1u]);
 }
 
@@ -72,3 +76,5 @@ void find_keys(GridRay grid, NodeWords words, int limit, out uint key[WIDE_CHILD
         child_key(grid, b >> 16 | c << 16, c >> 8, 2u * pair + 1u, scale, near_start, far_start, limit);
   }
 }
+
+#endif
