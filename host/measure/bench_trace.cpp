@@ -1,12 +1,14 @@
 #include <algorithm>
 
 #include "analysis/compare.h"
+#include "analysis/cpu_tracer.h"
 #include "builders/registry.h"
 #include "measure/bench.h"
 #include "measure/measure_frame.h"
 #include "pipeline/ray_tracing.h"
 #include "render/frame.h"
 #include "render/scene_room.h"
+#include "scene/random.h"
 #include "scene/scene_source.h"
 #include "stages/errors.h"
 
@@ -26,6 +28,24 @@ void check_hits(RayTracing& tracing, std::span<const Ray> rays, const TraceOptio
   if (exact ? difference.count > 0 : difference.other_triangle > some.size() / 1000)
     throw DeviceError("trace: " + std::to_string(difference.count) + " of " + std::to_string(some.size()) +
                       " hits are not the twin's");
+}
+
+// All rays, against the tracer of the CPU, which computes in double: at an edge either may see what the other
+// does not. How many are not as there.
+std::size_t check_any_hits(RayTracing& tracing, std::span<const Node> nodes,
+                           std::span<const Triangle> triangles, std::span<const Ray> rays,
+                           const TraceOptions& trace) {
+  const TracedAnyHits device = tracing.any_on_device(rays, trace);
+  if (device.error_word) throw DeviceError(describe_error_word(device.error_word));
+  std::vector<Hit> closest(rays.size());
+  trace_all(nodes, triangles, rays, closest);
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    wrong += (device.any_hits[i] != 0) != (closest[i].triangle != NO_TRIANGLE);
+  if (wrong > rays.size() / 10000)
+    throw DeviceError("trace: " + std::to_string(wrong) + " of " + std::to_string(rays.size()) +
+                      " any hits are not those of the CPU");
+  return wrong;
 }
 
 TraceOptions trace_options(const CheckedDevice& device, const BenchOptions& options, Walk walk) {
@@ -59,8 +79,9 @@ class TraceBench {
         has_wide_(can_trace_wide(options.trace)),
         primary_(
             rays_through(make_film(scene, options.camera, options.trace.width, options.trace.height, 1))),
-        tracing_(device.device(), built(options.builder, arrays_.triangles).nodes, arrays_.triangles,
-                 static_cast<std::uint32_t>(primary_.size()), has_wide_) {}
+        bvh_(built(options.builder, arrays_.triangles)),
+        tracing_(device.device(), bvh_.nodes, arrays_.triangles, static_cast<std::uint32_t>(primary_.size()),
+                 has_wide_) {}
 
   std::vector<Walk> walks() const {
     return has_wide_ ? std::vector{Walk::binary, Walk::wide_packets, Walk::wide_single}
@@ -73,6 +94,17 @@ class TraceBench {
   std::vector<Ray> diffuse() {
     std::vector<Ray> rays = tracing_.bounce(primary_, device_.trace_options(options_.trace), 1);
     std::erase_if(rays, [](const Ray& ray) { return ray.direction == vec3(0); });  // of rays that hit nothing
+    return rays;
+  }
+
+  // From where each of these rays begins to where another one does, by random.
+  std::vector<Ray> shadow(std::span<const Ray> diffuse) const {
+    Random random(1);
+    std::vector<Ray> rays(diffuse.begin(), diffuse.end());
+    for (Ray& ray : rays) {
+      ray.direction = diffuse[random.below(static_cast<std::uint32_t>(diffuse.size()))].origin - ray.origin;
+      ray.t_max = 0.999f;
+    }
     return rays;
   }
 
@@ -91,6 +123,17 @@ class TraceBench {
     return bench_row(name, input(walk), rays.size(), measure_steady(steady_options(options_, run()), run));
   }
 
+  BenchRow measure_any(const std::string& name, std::span<const Ray> rays, Walk walk) {
+    const TraceOptions trace = trace_options(device_, options_, walk);
+    const std::size_t others = check_any_hits(tracing_, bvh_.nodes, arrays_.triangles, rays, trace);
+    const auto run = [&] { return tracing_.any_on_device(rays, trace).ms; };
+    BenchRow row =
+        bench_row(name, input(walk), rays.size(), measure_steady(steady_options(options_, run()), run));
+    row.figures = {{"not_as_on_cpu", static_cast<double>(others)}};
+    row.note = std::to_string(others) + " of " + std::to_string(rays.size()) + " not as on the CPU";
+    return row;
+  }
+
  private:
   static Bvh built(const BuilderChoice& builder, std::span<const Triangle> triangles) {
     return find_cpu_builder(builder.on_device()->cpu_builder)
@@ -103,6 +146,7 @@ class TraceBench {
   SceneArrays arrays_;
   bool has_wide_;
   std::vector<Ray> primary_;
+  Bvh bvh_;
   RayTracing tracing_;
 };
 
@@ -117,6 +161,12 @@ void bench_trees(CheckedDevice& device, const BenchOptions& options, const Scene
     }
     if (!diffuse.empty() && is_wanted(options, "trace_diffuse", bench.input(walk)))
       add(bench.measure("trace_diffuse", diffuse, walk));
+    if (diffuse.empty() || walk == Walk::wide_packets) continue;  // packets have no any hits
+    const std::vector<Ray> shadow = bench.shadow(diffuse);
+    if (is_wanted(options, "trace_shadow_closest", bench.input(walk)))
+      add(bench.measure("trace_shadow_closest", shadow, walk));
+    if (is_wanted(options, "trace_shadow_any", bench.input(walk)))
+      add(bench.measure_any("trace_shadow_any", shadow, walk));
   }
 }
 

@@ -188,7 +188,7 @@ std::optional<Bytes> walk_bytes(const Step& step, const RunCounts& counts) {
   if (const auto* a = args_of(step, stages::trace_closest))
     return walk_bytes(*a, ray_and_hit, pairs + triangles, counts);
   if (const auto* a = args_of(step, stages::trace_wide))
-    return walk_bytes(*a, ray_and_hit, nodes / TRACE_PACKET + triangles, counts);
+    return walk_bytes(*a, ray_and_hit, counts.steps / TRACE_PACKET * sizeof(WideNode) + triangles, counts);
   if (const auto* a = args_of(step, stages::trace_wide_single))
     return walk_bytes(*a, ray_and_hit, nodes + triangles, counts);
   if (const auto* a = args_of(step, stages::trace_any))

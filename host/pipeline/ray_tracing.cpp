@@ -17,6 +17,7 @@ RayTracing::Slots RayTracing::plan(Layout& layout, std::size_t nodes, std::size_
     rays->hits = layout.add<Hit>(prefix + "hits", most_rays);
     rays->counters = layout.add<TraceCounters>(prefix + "counters", 1);
   }
+  slots.any = {slots.rays.rays, layout.add<uint>("any_hits", most_rays), slots.rays.counters, {}};
   return slots;
 }
 
@@ -73,12 +74,15 @@ TracedRays RayTracing::result(Executor& executor, std::size_t ray_count) const {
   return traced;
 }
 
+Pace& RayTracing::pace_of(const TraceOptions& options) {
+  return paces_.try_emplace(options.walk, submit_target_ms(device_.properties()), first_work(options))
+      .first->second;
+}
+
 double RayTracing::trace(std::size_t ray_count, const TraceOptions& options) {
   const HitPieces pieces(slots_.tree, slots_.rays, static_cast<std::uint32_t>(ray_count), options);
-  Pace& pace = paces_.try_emplace(options.walk, submit_target_ms(device_.properties()), first_work(options))
-                   .first->second;
   double ms = 0;
-  submit_pieces(gpu_, pieces, pace, Timestamps::total,
+  submit_pieces(gpu_, pieces, pace_of(options), Timestamps::total,
                 [&](const SubmittedPiece& piece) { ms += piece.times.total_ms; });
   return ms;
 }
@@ -97,6 +101,31 @@ TracedRays RayTracing::by_twins(std::span<const Ray> rays, const TraceOptions& o
   append_closest_hits(chain, slots_.tree, slots_.rays, static_cast<std::uint32_t>(rays.size()), options);
   cpu_.run(chain.steps());
   return result(cpu_, rays.size());
+}
+
+template <class Executor>
+TracedAnyHits RayTracing::any_result(Executor& executor, std::size_t ray_count) const {
+  return {executor.read(Slot<uint>{slots_.any.any_hits.place, ray_count}),
+          executor.read(slots_.tree.state)[0].error_word, 0};
+}
+
+TracedAnyHits RayTracing::any_on_device(std::span<const Ray> rays, const TraceOptions& options) {
+  upload_rays(gpu_, rays);
+  const AnyHitPieces pieces(slots_.tree, slots_.any, static_cast<std::uint32_t>(rays.size()), options);
+  double ms = 0;
+  submit_pieces(gpu_, pieces, pace_of(options), Timestamps::total,
+                [&](const SubmittedPiece& piece) { ms += piece.times.total_ms; });
+  TracedAnyHits traced = any_result(gpu_, rays.size());
+  traced.ms = ms;
+  return traced;
+}
+
+TracedAnyHits RayTracing::any_by_twins(std::span<const Ray> rays, const TraceOptions& options) {
+  upload_rays(cpu_, rays);
+  Chain chain = cpu_.chain();
+  append_any_hits(chain, slots_.tree, slots_.any, static_cast<std::uint32_t>(rays.size()), options);
+  cpu_.run(chain.steps());
+  return any_result(cpu_, rays.size());
 }
 
 std::vector<Ray> RayTracing::bounce(std::span<const Ray> rays, const TraceOptions& options,

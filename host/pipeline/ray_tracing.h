@@ -7,6 +7,7 @@
 
 #include "pipeline/pace.h"
 #include "pipeline/trace.h"
+#include "pipeline/trace_any.h"
 #include "pipeline/wide.h"
 #include "stages/cpu_executor.h"
 #include "stages/gpu_executor.h"
@@ -16,6 +17,12 @@ namespace coppice {
 struct TracedRays {
   std::vector<Hit> hits;
   std::uint64_t hit_count = 0;
+  std::uint32_t error_word = 0;
+  double ms = 0;  // of the kernels that trace
+};
+
+struct TracedAnyHits {
+  std::vector<uint> any_hits;  // 1 or 0 each
   std::uint32_t error_word = 0;
   double ms = 0;  // of the kernels that trace
 };
@@ -34,6 +41,10 @@ class RayTracing {
   TracedRays on_device(std::span<const Ray> rays, const TraceOptions& options);
   TracedRays by_twins(std::span<const Ray> rays, const TraceOptions& options);
 
+  // Whether each hits anything; in the same submits.
+  TracedAnyHits any_on_device(std::span<const Ray> rays, const TraceOptions& options);
+  TracedAnyHits any_by_twins(std::span<const Ray> rays, const TraceOptions& options);
+
   // Rays that leave the hits of `rays`, by stage bounce_rays on the device.
   std::vector<Ray> bounce(std::span<const Ray> rays, const TraceOptions& options, std::uint32_t seed);
 
@@ -42,6 +53,7 @@ class RayTracing {
     TreeSlots tree;
     std::optional<WidePlan> wide;
     RaySlots rays, bounced;
+    AnyHitSlots any;  // of the same rays
   };
   static Slots plan(Layout& layout, std::size_t nodes, std::size_t triangles, std::uint32_t most_rays,
                     bool wide);
@@ -49,6 +61,9 @@ class RayTracing {
   template <class Executor>
   void upload_rays(Executor& executor, std::span<const Ray> rays) const;
   double trace(std::size_t ray_count, const TraceOptions& options);  // ms of the kernels
+  template <class Executor>
+  TracedAnyHits any_result(Executor& executor, std::size_t ray_count) const;
+  Pace& pace_of(const TraceOptions& options);
   template <class Executor>
   TracedRays result(Executor& executor, std::size_t ray_count) const;
 

@@ -24,6 +24,14 @@ bool has_room(const TreeSlots& tree, const TraceOptions& options, std::uint64_t 
   return appended < work && (work - appended) / step_work(tree, options) >= RANGE_RAYS;
 }
 
+// Without the first elements.
+template <class T>
+void drop_first(Slot<T>& slot, std::uint32_t count) {
+  if (slot.count == 0) return;
+  slot.place.offset += count * sizeof(T);
+  slot.count -= count;
+}
+
 }  // namespace
 
 std::uint32_t range_rays(const TreeSlots& tree, const TraceOptions& options, std::uint64_t work) {
@@ -34,6 +42,16 @@ std::uint32_t range_rays(const TreeSlots& tree, const TraceOptions& options, std
 
 std::uint64_t work_of(const TreeSlots& tree, const TraceOptions& options, std::uint64_t rays) {
   return rays * (options.walk == Walk::brute_force ? std::max(tree.triangle_count, 1u) : 1);
+}
+
+std::uint64_t AnyHitPieces::append(Chain& chain, std::uint64_t work) {
+  const std::uint32_t count = std::min(range_rays(tree_, options_, work), ray_count_);
+  append_any_hits(chain, tree_, slots_, count, options_);
+  drop_first(slots_.rays, count);
+  drop_first(slots_.any_hits, count);
+  drop_first(slots_.filter.ray_masks, count);
+  ray_count_ -= count;
+  return count;
 }
 
 std::uint64_t HitPieces::append(Chain& chain, std::uint64_t work) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "pipeline/trace.h"
+#include "pipeline/trace_any.h"
 
 namespace coppice {
 
@@ -39,6 +40,25 @@ class HitPieces {
   TraceOptions options_;
   std::uint32_t ray_count_;
   RayRange range_;  // no rays: the next one is yet to be opened
+};
+
+// The any hits of the first rays of their slots, which have no count on the device.
+class AnyHitPieces {
+ public:
+  AnyHitPieces(const TreeSlots& tree, const AnyHitSlots& slots, std::uint32_t ray_count,
+               const TraceOptions& options)
+      : tree_(tree), slots_(slots), options_(options), ray_count_(ray_count) {}
+
+  bool done() const { return ray_count_ == 0; }
+
+  // As HitPieces::append.
+  std::uint64_t append(Chain& chain, std::uint64_t work);
+
+ private:
+  TreeSlots tree_;
+  AnyHitSlots slots_;  // of the rays that are left
+  TraceOptions options_;
+  std::uint32_t ray_count_;
 };
 
 // A picture: camera rays, closest hits, shading, sRGB.
