@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "analysis/tree_hash.h"
-#include "apps/frame.h"
+#include "render/scene_arrays.h"
 #include "builders/ploc.h"
 #include "pipeline/batch.h"
 #include "scene/hard_cases.h"

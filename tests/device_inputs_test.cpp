@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "analysis/tree_hash.h"
-#include "apps/frame.h"
+#include "render/scene_arrays.h"
 #include "builders/ploc.h"
 #include "interface/gather.h"
 #include "scene/hard_cases.h"

@@ -126,7 +126,7 @@ TEST_F(SelfCheck, RefusesADeviceByTheTracerThatIsGoingToRun) {
         dispatch_of(step)->constants.words.at(0) = 1;
     }
   };
-  const Fault half = [](std::vector<Step>& steps) { steps.back().groups.x /= 2; };
+  const Fault half = [](std::vector<Step>& steps) { dispatch_of(steps.back())->groups.x /= 2; };
   for (const DeviceUse& use :
        {traces_by(Walk::binary), traces_by(Walk::wide_packets), traces_by(Walk::wide_single)}) {
     EXPECT_TRUE(says(refusal(use, one_turn), "finds wrong hits"));
@@ -138,7 +138,7 @@ TEST_F(SelfCheck, RefusesADeviceByTheTracerThatIsGoingToRun) {
 TEST_F(SelfCheck, RefusesAGpuByItsTracer) {
   Device device({"", false, true});
   EXPECT_EQ(refusal(traces_by(Walk::wide_packets), {}, device), "");
-  const Fault half = [](std::vector<Step>& steps) { steps.back().groups.x /= 2; };
+  const Fault half = [](std::vector<Step>& steps) { dispatch_of(steps.back())->groups.x /= 2; };
   EXPECT_TRUE(says(refusal(traces_by(Walk::wide_packets), half, device), "finds wrong hits"));
 }
 

@@ -37,11 +37,11 @@ void expect_same_layout(const char* name, std::set<std::string>& seen) {
 TEST(SharedLayout, ArgsOfEveryStage) {
   std::set<std::string> seen;
   std::size_t structs = 0;
-#define COPPICE_CHECK_ARGS(stem, Args, nearly) EXPECT_SAME_LAYOUT(Args);
+#define COPPICE_CHECK_ARGS(stem, Args, Constants, nearly) EXPECT_SAME_LAYOUT(Args);
   COPPICE_STAGES(COPPICE_CHECK_ARGS)
 #undef COPPICE_CHECK_ARGS
   std::set<std::string> expected;
-#define COPPICE_NAME_ARGS(stem, Args, nearly) expected.insert(#Args);
+#define COPPICE_NAME_ARGS(stem, Args, Constants, nearly) expected.insert(#Args);
   COPPICE_STAGES(COPPICE_NAME_ARGS)
 #undef COPPICE_NAME_ARGS
   structs = expected.size();
