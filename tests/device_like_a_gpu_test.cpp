@@ -135,6 +135,8 @@ TEST_F(LikeAGpu, SameHitsThroughEveryTree) {
     const TracedRays traced = there.on_device(rays, options);
     EXPECT_EQ(traced.error_word, 0u);
     EXPECT_EQ(compare_hits(traced.hits, expected.hits).count, 0u) << "walk " << static_cast<int>(walk);
+    EXPECT_EQ(there.any_on_device(rays, options).any_hits, here.any_by_twins(rays, options).any_hits)
+        << "walk " << static_cast<int>(walk);
   }
 }
 

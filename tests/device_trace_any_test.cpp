@@ -8,9 +8,9 @@
 
 #include "analysis/hard_rays.h"
 #include "analysis/judge_hits.h"
-#include "apps/frame.h"
 #include "builders/ploc.h"
-#include "pipeline/traffic.h"
+#include "measure/traffic.h"
+#include "render/scene_arrays.h"
 #include "scene/hard_cases.h"
 #include "stages/errors.h"
 #include "support/device_run.h"

@@ -203,6 +203,27 @@ TEST_F(TraceCandidates, ATreeDeeperThanTheStackIsRefused) {
   EXPECT_EQ(refused.counts, std::vector<uint>(100, UNTOUCHED));
 }
 
+TEST_F(TraceCandidates, TooFewTurnsAreReportedByName) {
+  const std::vector<Triangle> triangles = random_triangles(500, 3, 0.5f);
+  const Bvh bvh = build_ploc(triangles, {});
+  const std::vector<Ray> rays = hard_rays(RayKind::RANDOM, triangles, {}, 100, 4);
+  Layout layout(test_device().properties().max_block_bytes);
+  const TreeSlots tree = plan_tree(layout, 0, bvh.nodes.size());
+  const CandidateSlots slots = plan_candidates(layout, 100, 4);
+  GpuExecutor executor(test_device(), layout);
+  BuildState state{};
+  state.active_count = 500;
+  executor.upload(tree.nodes, std::span<const Node>(bvh.nodes));
+  executor.upload(tree.state, std::span<const BuildState>(&state, 1));
+  executor.upload(slots.rays, std::span<const Ray>(rays));
+  TraceOptions few = test_trace_options(1, 1);
+  few.max_turns = 3;
+  Chain chain = executor.chain();
+  append_candidates(chain, tree, slots, 100, few);
+  executor.record(chain.steps()).submit_and_wait(submit_limit_seconds);
+  EXPECT_EQ(executor.read(tree.state)[0].error_word, ERROR_TRACE_STEPS);
+}
+
 TEST_F(TraceCandidates, SlotsThatAreTooSmallAreRefused) {
   Layout layout;
   const TreeSlots tree = plan_tree(layout, 1, 1);

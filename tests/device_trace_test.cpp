@@ -8,8 +8,8 @@
 
 #include "analysis/compare.h"
 #include "analysis/cpu_tracer.h"
-#include "render/frame.h"
 #include "builders/ploc.h"
+#include "render/frame.h"
 #include "scene/hard_cases.h"
 #include "stages/errors.h"
 #include "support/device_run.h"

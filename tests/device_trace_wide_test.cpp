@@ -8,10 +8,10 @@
 
 #include "analysis/compare.h"
 #include "analysis/hard_rays.h"
-#include "render/frame.h"
 #include "builders/ploc.h"
-#include "pipeline/ray_tracing.h"
 #include "measure/traffic.h"
+#include "pipeline/ray_tracing.h"
+#include "render/frame.h"
 #include "scene/hard_cases.h"
 #include "stages/errors.h"
 #include "stages/lockstep_executor.h"

@@ -8,10 +8,10 @@
 #include <optional>
 #include <random>
 
-#include "render/frame.h"
 #include "builders/ploc.h"
 #include "pipeline/trace_pieces.h"
 #include "pipeline/wide.h"
+#include "render/frame.h"
 #include "scene/hard_cases.h"
 #include "stages/cpu_executor.h"
 
@@ -160,6 +160,50 @@ TEST(TracePieces, StepsOfAPieceFollowFromItsWorkAlone) {
 TEST(HitPieces, NoRaysAreNoPieces) {
   const TreeSlots tree{};
   EXPECT_TRUE(HitPieces(tree, RaySlots{}, 0, {}).done());
+  EXPECT_TRUE(AnyHitPieces(tree, AnyHitSlots{}, 0, {}).done());
+}
+
+// With a mask a ray, so that pieces which took those of others would show.
+TEST(AnyHitPieces, GiveTheWordsOfTheWhole) {
+  const std::vector<Triangle> triangles = scene_arrays(find_hard_case("sphere")->make(500, 1)).triangles;
+  const Bvh bvh = build_ploc(triangles, {});
+  constexpr std::uint32_t ray_count = 5 * RANGE_RAYS + 7;
+  std::mt19937 random(1);
+  const auto next = [&] { return static_cast<float>(random() % 2001) / 1000 - 1; };
+  std::vector<Ray> rays;
+  std::vector<uint> masks;
+  for (std::uint32_t i = 0; i < ray_count; ++i) {
+    const float x = next(), y = next(), z = next();
+    rays.push_back({{}, 0, {x, y, z}, 1e30f});
+    masks.push_back(random() % 2);
+  }
+  const auto any_hits = [&](std::uint64_t work) {
+    Layout layout;
+    const TreeSlots tree = plan_tree(layout, static_cast<std::uint32_t>(triangles.size()), bvh.nodes.size());
+    AnyHitSlots slots = plan_any_hits(layout, ray_count);
+    slots.filter.ray_masks = layout.add<uint>("ray_masks", ray_count);
+    CpuExecutor executor(layout);
+    BuildState state{};
+    state.active_count = bvh.active_count;
+    executor.upload(tree.nodes, std::span<const Node>(bvh.nodes));
+    executor.upload(tree.triangles, std::span<const Triangle>(triangles));
+    executor.upload(tree.state, std::span<const BuildState>(&state, 1));
+    executor.upload(slots.rays, std::span<const Ray>(rays));
+    executor.upload(slots.filter.ray_masks, std::span<const uint>(masks));
+    std::size_t pieces = 0;
+    for (AnyHitPieces left(tree, slots, ray_count, {}); !left.done(); ++pieces) {
+      Chain chain = executor.chain();
+      left.append(chain, work);
+      executor.run(chain.steps());
+    }
+    EXPECT_EQ(pieces, work == 1 ? 6u : 1u);
+    EXPECT_EQ(executor.read(slots.counters)[0].rays.x, ray_count);
+    return executor.read(slots.any_hits);
+  };
+  const std::vector<uint> whole = any_hits(1 << 20);
+  EXPECT_EQ(any_hits(1), whole);
+  EXPECT_GT(std::ranges::count(whole, 1u), 100);
+  EXPECT_GT(std::ranges::count(whole, 0u), 100);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include "pipeline/batch.h"
 #include "pipeline/build.h"
 #include "pipeline/scan.h"
-#include "pipeline/trace.h"
+#include "pipeline/trace_any.h"
 #include "pipeline/wide.h"
 #include "stages/stages.h"
 
@@ -161,6 +161,30 @@ TEST(Traffic, OfVerticesBoxesAndABatch) {
   EXPECT_EQ(bytes["box_bounds"], 1000u * 48);
   EXPECT_EQ(bytes["primitive_bounds"], 7400u * 60);
   EXPECT_EQ(bytes["batch_build"], 100u * 24 + 6400 * 88);
+}
+
+TEST(Traffic, OfAnyHitsAndCandidates) {
+  Layout layout;
+  TreeSlots tree = plan_tree(layout, 100, 199);
+  plan_wide(layout, tree);
+  AnyHitSlots any = plan_any_hits(layout, 1000);
+  const CandidateSlots candidates = plan_candidates(layout, 1000, 4);
+  TraceCounters counters{};
+  counters.rays.x = 1000;
+  counters.hits.x = 500;
+  counters.steps.x = 30000;
+  Chain chain(no_addresses);
+  TraceOptions options;
+  append_any_hits(chain, tree, any, 1000, options);
+  options.walk = Walk::wide_single;
+  append_any_hits(chain, tree, any, 1000, options);
+  append_candidates(chain, tree, candidates, 1000, options);
+  const auto bytes = [&](std::size_t step) {
+    return modelled_bytes(chain.steps()[step], counts_of_trace(counters));
+  };
+  EXPECT_EQ(bytes(0), 1000u * 36 + 30000 * 64 + 500 * 36);
+  EXPECT_EQ(bytes(1), 1000u * 36 + 30000 * 96 + 500 * 36);
+  EXPECT_EQ(bytes(2), 1000u * 36 + 30000 * 64 + 500 * 8);
 }
 
 TEST(Traffic, OfAScanWithAndWithoutLookback) {
