@@ -238,7 +238,8 @@ TEST(BuildInputs, RefusesWhatNoKernelReads) {
   Layout layout;
   const BuildPlan triangles = plan_build(layout, 10, {}),
                   boxes = plan_build(layout, 10, {}, PrimitiveKind::boxes);
-  Chain chain(std::vector<std::uint64_t>(layout.block_bytes().size(), 1 << 20));
+  const std::vector<std::uint64_t> addresses(layout.block_bytes().size(), 1 << 20);
+  Chain chain(addresses);
   const auto refused = [&](const BuildPlan& plan, const BuildInput& input) {
     EXPECT_THROW(append_build(chain, plan, input), std::invalid_argument);
   };

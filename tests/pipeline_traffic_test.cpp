@@ -128,13 +128,13 @@ TEST(Traffic, OfACountOnTheDevice) {
     const auto moved = [&](std::uint32_t planned, bool counted, std::uint32_t there) {
       Layout layout;
       const BuildPlan plan = plan_build(layout, planned, options);
-      Chain chain({4096, 4096, 4096, 4096});
+      Chain chain(no_addresses);
       append_build(chain, plan, {.count_at = {counted ? 4096u : 0u}});
       RunCounts counts = two_rounds();
       counts.primitive_count = there;
       std::uint64_t bytes = 0;
       for (const Step& step : chain.steps()) {
-        if (step.stage) bytes += modelled_bytes(step, counts).value();
+        if (stage_of(step)) bytes += modelled_bytes(step, counts).value();
       }
       return bytes;
     };
@@ -149,13 +149,13 @@ TEST(Traffic, OfVerticesBoxesAndABatch) {
   const PrimitiveSlots gathered = plan_primitives(layout, 1000, PrimitiveKind::triangles);
   const PrimitiveSlots given = plan_primitives(layout, 1000, PrimitiveKind::boxes);
   const BatchPlan batch = plan_batch(layout, 6400, 100, {});
-  Chain chain({0});
+  Chain chain(no_addresses);
   append_primitives(chain, gathered, {VertexTriangles{.indices = {4096}, .index_bytes = 2}, {}});
   append_primitives(chain, given, {GivenBoxes{}, {}});
   append_batch(chain, batch);
   std::map<std::string, std::uint64_t> bytes;
   for (const Step& step : chain.steps()) {
-    if (step.stage) bytes[step.stage->name] += modelled_bytes(step, {}).value();
+    if (const auto* stage = stage_of(step)) bytes[stage->name] += modelled_bytes(step, {}).value();
   }
   EXPECT_EQ(bytes["gather_triangles"], 1000u * (36 + 6 + 36));
   EXPECT_EQ(bytes["box_bounds"], 1000u * 48);

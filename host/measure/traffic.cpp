@@ -44,7 +44,7 @@ std::optional<Bytes> primitive_bytes(const Step& step, const RunCounts& counts) 
   const auto primitives = [&](const auto& args) {
     return counted(args.count_at, args.triangle_count, counts);
   };
-  // Three corners by their indices, of which few are read twice from memory, and the triangle.
+  // Three vertices by their indices, and the triangle.
   if (const auto* a = args_of(step, stages::gather_triangles))
     return primitives(*a) * (3 * (sizeof(vec3) + (a->indices.value ? a->index_bytes : 0)) + sizeof(Triangle));
   if (const auto* a = args_of(step, stages::box_bounds))

@@ -53,7 +53,8 @@ void append_gather(Chain& chain, const PrimitiveSlots& slots, const VertexTriang
 PrimitiveSlots plan_primitives(Layout& layout, std::uint32_t count, PrimitiveKind kind) {
   PrimitiveSlots slots;
   slots.count = count;
-  slots.triangles = layout.add<Triangle>("triangles", kind == PrimitiveKind::triangles ? count : 0);
+  const std::uint32_t triangle_count = kind == PrimitiveKind::triangles ? count : 0;
+  slots.triangles = layout.add<Triangle>("triangles", triangle_count, Memory::tree);
   slots.boxes = layout.add<Aabb>("boxes", count);
   slots.state = layout.add<BuildState>("state", 1);
   return slots;
