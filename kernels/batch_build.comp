@@ -38,8 +38,9 @@ Normalisation tree_normalisation() { return normalisation; }
 void store_tree_node(uint i, Node node) { store_node(args.nodes, 2u * range.first + i, node); }
 
 bool in_bounds() {
-  return range.count <= BATCH_MAX_PRIMITIVES && range.first <= args.primitive_count &&
-         range.count <= args.primitive_count - range.first;
+  uint primitive_count = counted(args.primitives_at, args.primitive_count);
+  return range.count <= BATCH_MAX_PRIMITIVES && range.first <= primitive_count &&
+         range.count <= primitive_count - range.first;
 }
 
 void measure_range() {

@@ -42,17 +42,23 @@ struct Built {
 
 class DeviceBatch : public DeviceTest {
  protected:
-  static Built build(const Batch& batch, const BuildOptions& options, std::optional<uint> ranges_asked = {}) {
+  // With counts on the device where they are given.
+  static Built build(const Batch& batch, const BuildOptions& options, std::optional<uint> ranges = {},
+                     std::optional<uint> primitives = {}) {
     CountedRun run;
+    const auto primitive_count = run.layout.add<uint>("primitive_count", 1);
     const BatchPlan plan = plan_batch(run.layout, static_cast<std::uint32_t>(batch.triangles.size()),
                                       static_cast<std::uint32_t>(batch.ranges.size()), options);
-    run.start(ranges_asked.value_or(0));
+    run.start(ranges.value_or(0));
+    run.upload(primitive_count, {primitives.value_or(0)});
     run.upload(plan.primitives.triangles, batch.triangles);
     run.upload(plan.ranges, batch.ranges);
     run.fill(plan.nodes);
     run.fill(plan.trees);
     run.expect_same_bits([&](Chain& chain) {
-      append_batch(chain, plan, {}, ranges_asked ? chain.at(run.count) : UintBuffer{});
+      BuildInput input;
+      if (primitives) input.count_at = chain.at(primitive_count);
+      append_batch(chain, plan, input, ranges ? chain.at(run.count) : UintBuffer{});
     });
     return {run.read(plan.nodes), run.read(plan.trees), run.read(plan.state)[0],
             run.read(plan.primitives.state)[0]};
@@ -189,6 +195,27 @@ TEST_F(DeviceBatch, CountsOfRangesOnTheDevice) {
   }
   const Built none = build({}, {}, 3);
   EXPECT_EQ(none.state.error_word, ERROR_COUNT);
+}
+
+// What reaches beyond them is an error, as what lies there has no boxes.
+TEST_F(DeviceBatch, CountsOfPrimitivesOnTheDevice) {
+  const std::vector<Triangle> triangles = random_triangles(500, 7);
+  const Batch batch{triangles, {{0, 100}, {100, 200}, {300, 200}}};
+  for (const uint asked : {0u, 100u, 299u, 300u, 499u, 500u, 501u}) {
+    SCOPED_TRACE(std::to_string(asked));
+    const Built built = build(batch, {}, {}, asked);
+    ASSERT_FALSE(HasFatalFailure());
+    EXPECT_EQ(built.primitives.primitive_count, asked);
+    EXPECT_EQ(built.primitives.error_word, asked > 500 ? ERROR_COUNT : 0u);
+    EXPECT_EQ(built.state.error_word, asked < 500 ? ERROR_BATCH_RANGE : 0u);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const BatchRange& range = batch.ranges[i];
+      if (range.first + range.count <= asked)
+        expect_tree(built, i, range, batch.of(range), {});
+      else
+        EXPECT_EQ(built.trees[i].error_word, ERROR_BATCH_RANGE);
+    }
+  }
 }
 
 // More than one row of workgroups.

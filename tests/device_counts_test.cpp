@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 #include <optional>
 
 #include "analysis/tree_hash.h"
 #include "interface/sort.h"
 #include "pipeline/scan.h"
+#include "pipeline/wide.h"
 #include "scene/random.h"
 #include "stages/errors.h"
 #include "support/counted_run.h"
@@ -221,6 +223,29 @@ TEST_F(DeviceCountsBuild, OfManyTilesOfTheSort) {
     for (const uint asked : {1000u, SORT_RUNS_TILE, 2 * SORT_RUNS_TILE + 1})
       expect_tree(triangles, asked, options);
   }
+}
+
+// What comes behind a build takes its number from the state.
+TEST_F(DeviceCountsBuild, WideNodesOfACountedTree) {
+  const std::vector<Triangle> triangles = random_triangles(3000, 13);
+  const auto wide_of = [&](std::uint32_t most, std::optional<uint> asked) {
+    CountedRun run;
+    BuildPlan plan = plan_build(run.layout, most, {});
+    const WidePlan wide = plan_wide(run.layout, plan, &plan);
+    run.start(asked.value_or(0));
+    run.upload(plan.triangles, std::vector<Triangle>(triangles.begin(), triangles.begin() + most));
+    run.expect_same_bits([&](Chain& chain) {
+      append_build(chain, plan, {.count_at = asked ? chain.at(run.count) : UintBuffer{}});
+      append_wide(chain, plan, wide);
+    });
+    std::vector<WideNode> nodes = run.read(plan.wide_nodes);
+    nodes.resize(run.read(plan.wide_counts)[0].node_count);
+    return nodes;
+  };
+  const std::vector<WideNode> counted = wide_of(3000, 1001), alone = wide_of(1001, std::nullopt);
+  ASSERT_EQ(counted.size(), alone.size());
+  ASSERT_GT(counted.size(), 100u);
+  EXPECT_EQ(std::memcmp(counted.data(), alone.data(), counted.size() * sizeof(WideNode)), 0);
 }
 
 TEST_F(DeviceCountsBuild, NonePlanned) {

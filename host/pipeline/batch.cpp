@@ -28,8 +28,8 @@ void append_batch(Chain& chain, const BatchPlan& plan, const BuildInput& input, 
   append_primitives(chain, plan.primitives, input);
   chain.run(stages::batch_build,
             {chain.at(plan.ranges), chain.at(plan.primitives.boxes), chain.at(plan.nodes),
-             chain.at(plan.trees), chain.at(plan.state), ranges_at, range_count, plan.primitives.count,
-             plan.options.morton_bits / 30, plan.options.radius},
+             chain.at(plan.trees), chain.at(plan.state), ranges_at, input.count_at, range_count,
+             plan.primitives.count, plan.options.morton_bits / 30, plan.options.radius},
             groups_of(workgroups, rows, rows), {plan.options.radius});
 }
 

@@ -56,10 +56,11 @@ BatchTree build_range(const BatchBuildArgs& args, const BatchRange& range) {
 void batch_build(const BatchBuildArgs& args) {
   note_count(args.state[0], args.count_at, args.range_count);
   const uint count = counted(args.count_at, args.range_count);
+  const uint primitive_count = counted(args.primitives_at, args.primitive_count);
   for (uint i = 0; i < count; ++i) {
     const BatchRange range = args.ranges[i];
-    const bool sound = range.count <= BATCH_MAX_PRIMITIVES &&
-                       std::uint64_t{range.first} + range.count <= args.primitive_count;
+    const bool sound =
+        range.count <= BATCH_MAX_PRIMITIVES && std::uint64_t{range.first} + range.count <= primitive_count;
     args.trees[i] = sound ? build_range(args, range) : BatchTree{0, 0, ERROR_BATCH_RANGE, 0};
     args.state[0].error_word |= args.trees[i].error_word;
   }
