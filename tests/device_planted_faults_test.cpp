@@ -81,6 +81,7 @@ Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
     append_bounce(chain, build, trace, bounced, trace.band_rays, 1);
     if (frame.walk != Walk::brute_force) append_any_hits(chain, build, any, trace.band_rays, trace_options);
     append_candidates(chain, build, boxes, trace.band_rays, trace_options);
+    append_misses(chain, trace, trace.band_rays);
     spoil(chain.steps(), executor);
   });
   return {std::move(difference), {executor.nearly().begin(), executor.nearly().end()}};

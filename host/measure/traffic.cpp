@@ -191,6 +191,8 @@ std::optional<Bytes> walk_bytes(const Step& step, const RunCounts& counts) {
     return walk_bytes(*a, ray_and_hit, counts.steps / TRACE_PACKET * sizeof(WideNode) + triangles, counts);
   if (const auto* a = args_of(step, stages::trace_wide_single))
     return walk_bytes(*a, ray_and_hit, nodes + triangles, counts);
+  if (const auto* a = args_of(step, stages::trace_misses))
+    return walk_bytes(*a, sizeof(Ray) + sizeof(Hit), 0, counts);
   if (const auto* a = args_of(step, stages::trace_any))
     return walk_bytes(*a, ray_and_word, pairs + triangles, counts);
   if (const auto* a = args_of(step, stages::trace_wide_any))

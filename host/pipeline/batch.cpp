@@ -12,7 +12,7 @@ BatchPlan plan_batch(Layout& layout, std::uint32_t primitive_count, std::uint32_
   BatchPlan plan;
   plan.options = options;
   plan.primitives = plan_primitives(layout, primitive_count, kind);
-  plan.ranges = layout.add<BatchRange>("ranges", range_count);
+  plan.ranges = layout.add<BatchRange>("ranges", range_count, Memory::source);
   plan.nodes = layout.add<Node>("nodes", 2 * std::uint64_t{primitive_count}, Memory::tree);
   plan.trees = layout.add<BatchTree>("trees", range_count, Memory::tree);
   plan.state = layout.add<BuildState>("batch_state", 1, Memory::tree);

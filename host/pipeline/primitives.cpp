@@ -56,7 +56,7 @@ PrimitiveSlots plan_primitives(Layout& layout, std::uint32_t count, PrimitiveKin
   const std::uint32_t triangle_count = kind == PrimitiveKind::triangles ? count : 0;
   slots.triangles = layout.add<Triangle>("triangles", triangle_count, Memory::tree);
   slots.boxes = layout.add<Aabb>("boxes", count);
-  slots.state = layout.add<BuildState>("state", 1);
+  slots.state = layout.add<BuildState>("state", 1, Memory::tree);
   return slots;
 }
 

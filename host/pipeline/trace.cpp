@@ -90,6 +90,13 @@ bool has_closest_hits(const TreeSlots& tree, const RayRange& range, const TraceO
   return range.next_triangle >= (options.walk == Walk::brute_force ? std::max(tree.triangle_count, 1u) : 1u);
 }
 
+void append_misses(Chain& chain, const RaySlots& slots, std::uint32_t ray_count) {
+  chain.run(stages::trace_misses,
+            {chain.at(slots.rays), chain.at(slots.hits), address_or_null(chain, slots.filter.count_at),
+             ray_count, 0},
+            groups_of(ray_count, TRACE_GROUP));
+}
+
 std::uint64_t append_closest_hits(Chain& chain, const TreeSlots& tree, const RaySlots& slots, RayRange& range,
                                   const TraceOptions& options, std::uint64_t work) {
   if (options.walk == Walk::brute_force && (slots.filter.masks() || slots.filter.count_at.count != 0))

@@ -62,6 +62,9 @@ struct TracePlan : RaySlots {
 TracePlan plan_trace(Layout& layout, const TreeSlots& tree, std::uint32_t material_count,
                      const TraceOptions& options);
 
+// No hit yet for each of the first `ray_count` rays.
+void append_misses(Chain& chain, const RaySlots& slots, std::uint32_t ray_count);
+
 // The closest hits of the first `ray_count` rays, improved in place. Of the options the size of the picture,
 // the samples and the light do not matter. Throws std::invalid_argument for a wide tree with another test,
 // and for a filter with brute force.

@@ -39,6 +39,7 @@
   STAGE(wide_sizes, WideSizesArgs, NoConstants, exactly)                               \
   STAGE(wide_quantise, WideQuantiseArgs, NoConstants, exactly)                         \
   STAGE(camera_rays, CameraRaysArgs, NoConstants, nearly_rays)                         \
+  STAGE(trace_misses, TraceMissesArgs, NoConstants, exactly)                           \
   STAGE(trace_closest, TraceClosestArgs, TraceClosestConstants, nearly_hits)           \
   STAGE(trace_wide, TraceWideArgs, TraceWideConstants, nearly_hits)                    \
   STAGE(trace_wide_single, TraceWideArgs, TraceWideConstants, nearly_hits)             \

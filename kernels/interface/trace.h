@@ -204,6 +204,15 @@ struct TraceCandidatesArgs {
   uint capacity;
 };
 
+// No hit yet for each ray.
+struct TraceMissesArgs {
+  RayBuffer rays;
+  HitBuffer hits;       // out
+  UintBuffer count_at;  // as in TraceClosestArgs
+  uint ray_count;
+  uint padding;
+};
+
 struct TraceBruteForceArgs {
   TriangleBuffer triangles;
   RayBuffer rays;

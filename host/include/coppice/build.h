@@ -93,6 +93,46 @@ class COPPICE_API Builder {
   std::unique_ptr<Plan> plan_;
 };
 
+// Where the trees of a batch lie.
+struct BatchAddresses {
+  VkDeviceAddress nodes = 0;  // CoppiceNode; the tree of a range from 2 * first on, its root first: its
+                              // children count from there, its leaves from the range's first primitive
+  VkDeviceAddress trees = 0;      // CoppiceBatchTree, one a range
+  VkDeviceAddress triangles = 0;  // CoppiceTriangle, all of them; null for boxes
+  VkDeviceAddress state = 0;  // CoppiceTreeState: error_word has the bits of all trees, primitive_count is
+                              // the number of ranges
+  VkDeviceAddress input_state = 0;  // CoppiceTreeState of the primitives: whether there were too many
+};
+
+// Many small trees in one go: a dispatch for all. Each has at most COPPICE_BATCH_MAX_PRIMITIVES primitives
+// and is the same, bit for bit, as one that a Builder by PLOC makes of them alone. Otherwise as a Builder.
+class COPPICE_API BatchBuilder {
+ public:
+  // Of the options the radius and the Morton bits count.
+  BatchBuilder(const Context& context, std::uint32_t max_primitives, std::uint32_t max_trees,
+               const TreeOptions& options = {});
+  ~BatchBuilder();
+  BatchBuilder(BatchBuilder&&) noexcept;
+
+  BuildSizes sizes() const;
+
+  // `ranges`: CoppiceRange each, a multiple of 8; no primitive is in two of them. A range that is too large,
+  // or reaches beyond the primitives, has no tree and sets COPPICE_ERROR_BATCH_RANGE.
+  void cmd_build(VkCommandBuffer commands, const TriangleInput& input, VkDeviceAddress ranges,
+                 const ElementCount& range_count, const MemoryRange& tree, const MemoryRange& scratch,
+                 KernelQueries* queries = nullptr) const;
+  void cmd_build(VkCommandBuffer commands, const BoxInput& input, VkDeviceAddress ranges,
+                 const ElementCount& range_count, const MemoryRange& tree, const MemoryRange& scratch,
+                 KernelQueries* queries = nullptr) const;
+
+  BatchAddresses triangle_trees(const MemoryRange& tree) const;
+  BatchAddresses box_trees(const MemoryRange& tree) const;
+
+ private:
+  struct Plan;
+  std::unique_ptr<Plan> plan_;
+};
+
 // What a Builder of these says.
 inline BuildSizes build_sizes(const Context& context, std::uint32_t max_primitives,
                               const TreeOptions& options = {}) {

@@ -90,6 +90,20 @@ typedef struct CoppiceTreeState {
   uint32_t reserved[2];
 } CoppiceTreeState;
 
+#define COPPICE_BATCH_MAX_PRIMITIVES 512
+
+/* The primitives of one tree of a batch. */
+typedef struct CoppiceRange {
+  uint32_t first, count;
+} CoppiceRange;
+
+typedef struct CoppiceBatchTree {
+  uint32_t active_count; /* primitives in the tree; 0: no tree */
+  uint32_t round_count;
+  uint32_t error_word;
+  uint32_t reserved;
+} CoppiceBatchTree;
+
 #define COPPICE_ERROR_SORT_LOOKBACK 1u /* a tile of a sort waited in vain for those before it */
 #define COPPICE_ERROR_PLOC_LOOKBACK 2u /* the same in a build */
 #define COPPICE_ERROR_PLOC_ROUNDS 4u   /* rounds did not end within their bound */
@@ -97,6 +111,7 @@ typedef struct CoppiceTreeState {
 #define COPPICE_ERROR_TRACE_STEPS 16u /* a ray needs more steps than this driver's loops may take */
 #define COPPICE_ERROR_SCAN_LOOKBACK 32u
 #define COPPICE_ERROR_WIDE_TOO_DEEP 64u
-#define COPPICE_ERROR_COUNT 128u /* a count on the device is larger than its maximum */
+#define COPPICE_ERROR_BATCH_RANGE 256u /* a range of a batch is too large or beyond the primitives */
+#define COPPICE_ERROR_COUNT 128u       /* a count on the device is larger than its maximum */
 
 #endif
