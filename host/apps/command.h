@@ -37,7 +37,7 @@ class Command {
   OutputOptions files;
 };
 
-// All of them, in the order of the help.
+// How the command line knows one.
 struct NamedCommand {
   const char* name;
   const char* summary;

@@ -17,6 +17,11 @@ PFN_vkGetInstanceProcAddr loader_entry() {
 }
 
 std::string why_no_device() {
+  try {
+    loader_entry();
+  } catch (const DeviceError& error) {
+    return error.what();
+  }
   std::string settings;  // each can keep the loader from drivers that are there
   for (const char* const name :
        {"VK_DRIVER_FILES", "VK_ICD_FILENAMES", "VK_LOADER_DRIVERS_SELECT", "VK_LOADER_DRIVERS_DISABLE"}) {

@@ -4,7 +4,7 @@
 #include "analysis/hard_rays.h"
 #include "builders/ploc.h"
 #include "measure/progress.h"
-#include "measure/stability.h"
+#include "measure/stability_runs.h"
 #include "measure/steady_state.h"
 #include "pipeline/ray_tracing.h"
 #include "scene/random.h"

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "measure/json.h"
-#include "measure/stability.h"
+#include "measure/stability_runs.h"
 #include "measure/table.h"
 
 namespace coppice {

@@ -1,4 +1,4 @@
-#include "measure/stability.h"
+#include "measure/stability_runs.h"
 
 #include <algorithm>
 #include <cstring>
