@@ -41,7 +41,7 @@ Passage passage_of(const Node& box, const Ray& ray, double margin) {
     const double below = double{box.box_min[axis]} - margin - ray.origin[axis];
     const double above = double{box.box_max[axis]} + margin - ray.origin[axis];
     if (ray.direction[axis] == 0) {
-      if (below > 0 || above < 0) passage.leave = -passage.leave;
+      if (below > 0 || above < 0) passage.leave = -INFINITE;
       continue;
     }
     const double one = below / ray.direction[axis], other = above / ray.direction[axis];

@@ -130,7 +130,7 @@ TEST_F(Traverse, FindsNothingWithoutATreeAndInOneThatDoesNotFit) {
   const std::vector<Ray> rays = hard_rays(RayKind::RANDOM, triangles, {}, 40, 4);
   EXPECT_EQ(expect_as_the_kernels({.nodes = {}, .triangles = {}, .rays = rays}, "no tree"), 0u);
   Bvh bvh = build_ploc(triangles, {});
-  bvh.nodes[0].height = 65;  // of a stack of 64
+  bvh.nodes[0].height = 129;  // of a stack of 128
   const ConsumerFound found = trace_by_consumer({.nodes = bvh.nodes, .triangles = triangles, .rays = rays});
   for (std::size_t i = 0; i < rays.size(); ++i) {
     EXPECT_EQ(found.hits[2 * i].triangle, NO_TRIANGLE);

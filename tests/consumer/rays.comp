@@ -1,7 +1,7 @@
 // Given rays through both kinds of trees from a shader that is none of Coppice's: what traverse.glsl finds.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#define COPPICE_STACK 64
+#define COPPICE_STACK 128
 #include "coppice/traverse.glsl"
 
 layout(local_size_x = 32) in;
