@@ -200,7 +200,7 @@ TEST_F(LibraryErrors, ADeviceThatLacksAFeatureIsRefusedByItsName) {
   EXPECT_NE(
       thrown_by<DeviceError>([&] { Context{device}; }).find("the feature scalarBlockLayout is not enabled"),
       std::string::npos);
-  VkPhysicalDeviceFeatures2 bare{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
+  auto bare = consumer::structure<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2);
   EXPECT_EQ(missing_feature(bare), "shaderInt64");
   device.enabled_features = nullptr;
   EXPECT_NE(thrown_by<DeviceError>([&] { Context{device}; }).find("enabled_features is null"),

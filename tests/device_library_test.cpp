@@ -69,8 +69,8 @@ TEST_F(Library, BuildersGiveTheTreesOfTheHost) {
                      plain(memory, count));
       };
       expect_nodes(built_by(DeviceBuilder::ploc), build_ploc(triangles, {.morton_bits = bits}).nodes, "ploc");
-      expect_nodes(built_by(DeviceBuilder::hploc), build_hploc(triangles, {.morton_bits = bits}).nodes,
-                   "hploc");
+      expect_nodes(built_by(DeviceBuilder::hploc),
+                   build_hploc(triangles, {.radius = 16, .morton_bits = bits}).nodes, "hploc");
       expect_nodes(built_by(DeviceBuilder::lbvh), build_lbvh(triangles, {.morton_bits = bits}).nodes, "lbvh");
     }
   }
@@ -144,9 +144,10 @@ TEST_F(Library, CountsOnTheDevice) {
         continue;
       }
       const auto first = std::span(triangles).first(count);
-      expect_nodes(built,
-                   by == DeviceBuilder::ploc ? build_ploc(first, {}).nodes : build_hploc(first, {}).nodes,
-                   "counted");
+      expect_nodes(
+          built,
+          by == DeviceBuilder::ploc ? build_ploc(first, {}).nodes : build_hploc(first, {.radius = 16}).nodes,
+          "counted");
     }
   }
 }
@@ -154,7 +155,7 @@ TEST_F(Library, CountsOnTheDevice) {
 TEST_F(Library, BoxesHandTheirCandidatesBack) {
   constexpr std::uint32_t count = 2000, ray_count = 500, capacity = 8;
   std::vector<CoppiceBox> boxes;
-  for (const Triangle& t : random_triangles(count, 5)) {
+  for (const Triangle& t : random_triangles(count, 5, 0.25f)) {
     const vec3 low = glm::min(t.a, t.b), high = glm::max(t.a, t.b);
     boxes.push_back({{low.x, low.y, low.z}, {high.x, high.y, high.z}});
   }
@@ -216,7 +217,7 @@ TEST_F(Library, ABatchIsAsManyTreesOfTheirOwn) {
                     {static_cast<std::uint32_t>(ranges.size())}, range_of(tree), range_of(scratch));
   own().run(commands);
   const BatchAddresses at = builder.triangle_trees(range_of(tree));
-  const auto trees = read<BatchTree>(tree, at.trees, ranges.size());
+  const auto trees = read<CoppiceBatchTree>(tree, at.trees, ranges.size());
   EXPECT_EQ(read<BuildState>(tree, at.state, 1)[0].error_word, COPPICE_ERROR_BATCH_RANGE);
   for (std::size_t i = 0; i < ranges.size(); ++i) {
     if (ranges[i].count > COPPICE_BATCH_MAX_PRIMITIVES) {
@@ -318,7 +319,7 @@ TEST_F(Library, QueriesTellTheTimeOfEveryKernel) {
   const Builder builder(context(), count);
   const auto tree = own().make_buffer(builder.sizes().tree_bytes);
   const auto scratch = own().make_buffer(builder.sizes().scratch_bytes);
-  VkQueryPoolCreateInfo info{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
+  auto info = consumer::structure<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
   info.queryType = VK_QUERY_TYPE_TIMESTAMP;
   info.queryCount = capacity;
   VkQueryPool pool = VK_NULL_HANDLE;

@@ -21,8 +21,8 @@ struct Dispatch {
   std::array<std::byte, 128> args{};
   std::uint32_t args_bytes = 0;
   uvec3 groups{};
-  std::optional<Place> indirect;  // where the device finds the number of workgroups, in place of `groups`
-  KernelConstants constants;      // never change a result
+  std::optional<Place> indirect{};  // where the device finds the number of workgroups, in place of `groups`
+  KernelConstants constants{};      // never change a result
 };
 
 // Zeroes written to a place.

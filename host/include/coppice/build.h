@@ -95,8 +95,8 @@ class COPPICE_API Builder {
 
 // Where the trees of a batch lie.
 struct BatchAddresses {
-  VkDeviceAddress nodes = 0;  // CoppiceNode; the tree of a range from 2 * first on, its root first: its
-                              // children count from there, its leaves from the range's first primitive
+  VkDeviceAddress nodes = 0;      // CoppiceNode; the tree of a range from 2 * first on, its root first: its
+                                  // children count from there, its leaves from the range's first primitive
   VkDeviceAddress trees = 0;      // CoppiceBatchTree, one a range
   VkDeviceAddress triangles = 0;  // CoppiceTriangle, all of them; null for boxes
   VkDeviceAddress state = 0;  // CoppiceTreeState: error_word has the bits of all trees, primitive_count is
