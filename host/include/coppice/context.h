@@ -48,11 +48,6 @@ struct ContextOptions {
   // Compiled pipelines and the verdicts of self-checks are kept here between runs, by driver; empty: nowhere.
   std::filesystem::path cache_folder{};
   Log log{};
-};  // of a device of its own: part of its name, or its index; empty: the most capable kind
-bool validate = false;  // of a device of its own: validation layers, synchronization validation included
-// Compiled pipelines and the verdicts of self-checks are kept here between runs, by driver; empty: nowhere.
-std::filesystem::path cache_folder{};
-Log log{};
 };
 
 // A device that the caller has made. All handles must outlive the context.
