@@ -8,10 +8,10 @@
 #include <functional>
 
 #include "analysis/wide_tree.h"
-#include "render/frame.h"
 #include "builders/hploc.h"
 #include "builders/lbvh.h"
 #include "builders/ploc.h"
+#include "render/frame.h"
 #include "scene/hard_cases.h"
 #include "support/triangles.h"
 #include "support/wide.h"

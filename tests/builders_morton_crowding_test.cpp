@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <limits>
 
-#include "render/frame.h"
 #include "builders/lbvh.h"
 #include "builders/leaves.h"
 #include "builders/morton_crowding.h"
 #include "builders/morton_order.h"
 #include "builders/normalised_space.h"
 #include "builders/ploc.h"
+#include "render/frame.h"
 #include "scene/hard_cases.h"
 #include "scene/scene_source.h"
 #include "support/triangles.h"

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "analysis/tree_hash.h"
-#include "render/scene_arrays.h"
 #include "builders/ploc.h"
 #include "pipeline/batch.h"
+#include "render/scene_arrays.h"
 #include "scene/hard_cases.h"
 #include "scene/random.h"
 #include "stages/errors.h"

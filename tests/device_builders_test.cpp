@@ -6,8 +6,8 @@
 
 #include "analysis/compare.h"
 #include "analysis/cpu_tracer.h"
-#include "render/frame.h"
 #include "builders/registry.h"
+#include "render/frame.h"
 #include "scene/generators.h"
 #include "stages/errors.h"
 #include "support/device_run.h"

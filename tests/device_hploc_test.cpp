@@ -6,10 +6,10 @@
 
 #include "analysis/tree_hash.h"
 #include "analysis/validate.h"
-#include "render/frame.h"
 #include "builders/hploc.h"
 #include "builders/lbvh.h"
 #include "interface/hploc.h"
+#include "render/frame.h"
 #include "scene/hard_cases.h"
 #include "support/device_run.h"
 #include "support/lockstep.h"

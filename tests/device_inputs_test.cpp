@@ -9,9 +9,9 @@
 #include <limits>
 
 #include "analysis/tree_hash.h"
-#include "render/scene_arrays.h"
 #include "builders/ploc.h"
 #include "interface/gather.h"
+#include "render/scene_arrays.h"
 #include "scene/hard_cases.h"
 #include "scene/random.h"
 #include "support/counted_run.h"

@@ -15,7 +15,9 @@ namespace {
 
 class SelfCheck : public DeviceTest {};
 
-bool is_stage(const Step& step, std::string_view name) { return stage_of(step) && stage_of(step)->name == name; }
+bool is_stage(const Step& step, std::string_view name) {
+  return stage_of(step) && stage_of(step)->name == name;
+}
 
 template <class Args>
 Args step_args_of(const Step& step) {
@@ -33,7 +35,8 @@ bool uses_lookback(const std::vector<Step>& steps) {
 // Every build ends well, with a tree that is valid and not the one asked for.
 void search_too_near(std::vector<Step>& steps) {
   for (Step& step : steps) {
-    if (is_stage(step, "ploc_merge") || is_stage(step, "ploc_tile_counts")) dispatch_of(step)->constants.words.at(3) = 1;
+    if (is_stage(step, "ploc_merge") || is_stage(step, "ploc_tile_counts"))
+      dispatch_of(step)->constants.words.at(3) = 1;
   }
 }
 

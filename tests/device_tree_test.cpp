@@ -5,8 +5,8 @@
 
 #include "analysis/tree_hash.h"
 #include "analysis/validate.h"
-#include "render/frame.h"
 #include "builders/ploc.h"
+#include "render/frame.h"
 #include "scene/hard_cases.h"
 #include "stages/gpu_executor.h"
 #include "support/device_run.h"

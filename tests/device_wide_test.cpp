@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "analysis/wide_tree.h"
-#include "render/frame.h"
 #include "builders/registry.h"
 #include "pipeline/wide.h"
+#include "render/frame.h"
 #include "scene/hard_cases.h"
 #include "stages/lockstep_executor.h"
 #include "stages/stages.h"

@@ -7,8 +7,8 @@
 
 #include "builders/morton_crowding.h"
 #include "builders/ploc.h"
-#include "pipeline/trace.h"
 #include "measure/traffic.h"
+#include "pipeline/trace.h"
 #include "scene/hard_cases.h"
 #include "support/wide.h"
 

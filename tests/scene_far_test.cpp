@@ -10,8 +10,8 @@
 #include <sstream>
 
 #include "analysis/cpu_tracer.h"
-#include "render/frame.h"
 #include "builders/registry.h"
+#include "render/frame.h"
 #include "scene/load_obj.h"
 
 namespace coppice {

@@ -9,9 +9,9 @@
 #include <cstdlib>
 #include <exception>
 
-#include "render/frame.h"
 #include "builders/registry.h"
 #include "pipeline/ray_tracing.h"
+#include "render/frame.h"
 #include "scene/scene_source.h"
 #include "support/embree_scene.h"
 
