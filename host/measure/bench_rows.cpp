@@ -66,7 +66,7 @@ const Row& add_row(Table& table, const BenchRow& row) {
   for (const auto& [name, value] : row.figures) set({.key = name, .places = in_files}, value);
   for (const KernelTime& kernel : row.kernels.rows) {
     set({.key = kernel.name + "_ms", .places = IN_CSV}, kernel.ms);
-    if (kernel.bytes) set({.key = kernel.name + "_bytes", .places = IN_CSV}, *kernel.bytes);
+    set({.key = kernel.name + "_bytes", .places = IN_CSV}, kernel.bytes);
     if (kernel.copy_ms)
       set({.key = kernel.name + "_percent_of_copy", .places = IN_CSV}, kernel.percent_of_copy());
   }

@@ -41,9 +41,9 @@ Table columns_of_kernels() {
 // `share`: of the sum, in percent.
 Row kernel_row(const KernelTime& kernel, double share) {
   const bool took_time = kernel.ms > 0;
-  std::optional<double> megabytes, gb_per_s, percent_of_copy;
-  if (kernel.bytes) megabytes = static_cast<double>(*kernel.bytes) * 1e-6;
-  if (kernel.bytes && took_time) gb_per_s = kernel.gb_per_s();
+  const double megabytes = static_cast<double>(kernel.bytes) * 1e-6;
+  std::optional<double> gb_per_s, percent_of_copy;
+  if (took_time) gb_per_s = kernel.gb_per_s();
   if (kernel.copy_ms && took_time) percent_of_copy = kernel.percent_of_copy();
   return {
       {kernel.name, kernel.ms, share, kernel.dispatches, kernel.bytes, megabytes, gb_per_s, percent_of_copy}};
@@ -70,7 +70,7 @@ KernelTime KernelTable::sum() const {
   for (const KernelTime& row : rows) {
     sum.ms += row.ms;
     sum.dispatches += row.dispatches;
-    add(sum.bytes, row.bytes);
+    sum.bytes += row.bytes;
     add(sum.copy_ms, row.copy_ms);
   }
   return sum;
@@ -99,7 +99,7 @@ void KernelSums::add(std::span<const Step> steps, const Recorder::Times& times, 
   untimed_ = untimed_ || (times.steps_ms.empty() && !steps.empty());
   for (std::size_t i = 0; i < times.steps_ms.size(); ++i) {
     const std::string name = step_name(steps[i]);
-    const std::optional<std::uint64_t> bytes = modelled_bytes(steps[i], counts);
+    const std::uint64_t bytes = modelled_bytes(steps[i], counts);
     const auto [entry, is_new] = index_.try_emplace({name, bytes}, sums_.size());
     if (is_new) sums_.push_back({name, bytes});
     Sum& sum = sums_[entry->second];
@@ -110,7 +110,7 @@ void KernelSums::add(std::span<const Step> steps, const Recorder::Times& times, 
 
 std::uint64_t KernelSums::largest_dispatch() const {
   std::uint64_t largest = 0;
-  for (const Sum& sum : sums_) largest = std::max(largest, sum.bytes.value_or(0));
+  for (const Sum& sum : sums_) largest = std::max(largest, sum.bytes);
   return largest;
 }
 
@@ -123,9 +123,8 @@ KernelTable kernel_table(const KernelSums& sums, const std::optional<CopyLimit>&
     if (row == table.rows.end()) row = table.rows.insert(row, {.name = sum.name});
     row->ms += sum.ms;
     row->dispatches += sum.dispatches;
-    add(row->bytes, sum.bytes ? std::optional(*sum.bytes * sum.dispatches) : std::nullopt);
-    add(row->copy_ms,
-        limit && sum.bytes ? std::optional(limit->ms(*sum.bytes) * sum.dispatches) : std::nullopt);
+    row->bytes += sum.bytes * sum.dispatches;
+    add(row->copy_ms, limit ? std::optional(limit->ms(sum.bytes) * sum.dispatches) : std::nullopt);
   }
   if (limit) {
     const CopyLimit::Measurement& largest = limit->measurements().back();

@@ -43,7 +43,7 @@ class KernelSums {
 
   struct Sum {
     std::string name;
-    std::optional<std::uint64_t> bytes;  // of one dispatch, by the stage's model
+    std::uint64_t bytes;  // of one dispatch, by the stage's model
     double ms = 0;
     std::uint32_t dispatches = 0;
   };
@@ -57,7 +57,7 @@ class KernelSums {
  private:
   bool untimed_ = false;
   std::vector<Sum> sums_;
-  std::map<std::pair<std::string, std::optional<std::uint64_t>>, std::size_t> index_;
+  std::map<std::pair<std::string, std::uint64_t>, std::size_t> index_;
 };
 
 // One row of the table of kernels: all dispatches of a kernel.
@@ -65,10 +65,10 @@ struct KernelTime {
   std::string name;
   double ms = 0;
   std::uint32_t dispatches = 0;
-  std::optional<std::uint64_t> bytes = 0;  // by the stages' models; empty for a stage without one
-  std::optional<double> copy_ms = 0;       // what copies of the same sizes take; empty where not measured
+  std::uint64_t bytes = 0;            // by the stages' models
+  std::optional<double> copy_ms = 0;  // what copies of the same sizes take; empty where not measured
 
-  double gb_per_s() const { return static_cast<double>(bytes.value_or(0)) / (ms * 1e6); }
+  double gb_per_s() const { return static_cast<double>(bytes) / (ms * 1e6); }
   double percent_of_copy() const { return 100 * copy_ms.value_or(0) / ms; }
 };
 

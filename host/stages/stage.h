@@ -8,6 +8,8 @@
 
 namespace coppice {
 
+struct RunCounts;
+
 // What of a stage's result may differ between a GPU and the twin, because it divides or takes a square root,
 // which Vulkan lets be off by some ulps. The limits are in stages/nearly.h.
 enum class Nearly { rays, hits, any_hits, candidates, candidate_counts, counters, radiance, image };
@@ -23,6 +25,8 @@ struct StageDeclaration {
   const char* name;
   std::span<const std::uint32_t> kernel;
   void (*twin)(const void* args);
+  // Bytes that it must read and write at least, once each, in a run that left these counts.
+  std::uint64_t (*traffic)(const void* args, const RunCounts& counts);
   // Slots that it writes nearly alike; all others hold the same bits on every device.
   std::span<const NearlySlot> nearly;
 };

@@ -4,9 +4,13 @@
 
 namespace coppice {
 
-#define COPPICE_DEFINE_STAGE(stem, Args, Constants, nearly)                                                  \
-  const Stage<Args, Constants> stages::stem{                                                                 \
-      {#stem, spirv::stem, [](const void* args) { twins::stem(*static_cast<const Args*>(args)); }, nearly}}; \
+#define COPPICE_DEFINE_STAGE(stem, Args, Constants, nearly)                                        \
+  const Stage<Args, Constants> stages::stem{                                                       \
+      {#stem, spirv::stem, [](const void* args) { twins::stem(*static_cast<const Args*>(args)); }, \
+       [](const void* args, const RunCounts& counts) {                                             \
+         return traffic::stem(*static_cast<const Args*>(args), counts);                            \
+       },                                                                                          \
+       nearly}};                                                                                   \
   static_assert(sizeof(Args) <= 128 && sizeof(Args) % 8 == 0, "push constants of " #stem);
 COPPICE_STAGES(COPPICE_DEFINE_STAGE)
 #undef COPPICE_DEFINE_STAGE

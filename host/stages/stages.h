@@ -11,11 +11,13 @@
 #include "interface/sort.h"
 #include "interface/trace.h"
 #include "interface/wide.h"
+#include "stages/run_counts.h"
 #include "stages/stage.h"
 
-// THE TABLE. A line here, a kernel kernels/<stem>.comp and a twin host/twins/<stem>.cpp make a stage. After
-// its arguments come its kernel's specialization constants, and what of its result only nearly equals the
-// twin's on a GPU, see below.
+// THE TABLE. A line here, a kernel kernels/<stem>.comp, a twin host/twins/<stem>.cpp and a model of its
+// traffic (traffic_of_*.cpp) make a stage; without one of them nothing links. After its arguments come its
+// kernel's specialization constants, and what of its result only nearly equals the twin's on a GPU, see
+// below.
 #define COPPICE_STAGES(STAGE)                                                          \
   STAGE(gather_triangles, GatherTrianglesArgs, NoConstants, exactly)                   \
   STAGE(primitive_bounds, PrimitiveBoundsArgs, NoConstants, exactly)                   \
@@ -56,6 +58,10 @@
 
 namespace coppice {
 
+namespace traffic {
+using Bytes = std::uint64_t;
+}
+
 namespace stages {
 inline constexpr std::span<const NearlySlot> exactly;
 inline constexpr NearlySlot nearly_rays[] = {{"rays", Nearly::rays}};
@@ -73,6 +79,9 @@ inline constexpr NearlySlot nearly_image[] = {{"image", Nearly::image}};
 #define COPPICE_DECLARE_STAGE(stem, Args, Constants, nearly) \
   namespace twins {                                          \
   void stem(const Args& args);                               \
+  }                                                          \
+  namespace traffic {                                        \
+  Bytes stem(const Args& args, const RunCounts& counts);     \
   }                                                          \
   namespace stages {                                         \
   extern const Stage<Args, Constants> stem;                  \

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "interface/ploc.h"
+#include "interface/wide.h"
+
+namespace coppice {
+
+// What a run left on the device that decides how many bytes its stages moved.
+struct RunCounts {
+  std::uint32_t active_count = 0;              // triangles in the tree
+  std::uint32_t primitive_count = UINT32_MAX;  // where steps take their number from the device: that number
+  std::vector<PlocRound> rounds;  // every entered round, the last with one cluster; empty: no build
+  std::uint32_t wide_nodes = 0;
+  std::vector<WideLevel> wide_levels;           // all of them; behind them none or empty ones
+  std::uint64_t rays = 0, hits = 0, steps = 0;  // of the whole trace
+};
+
+}  // namespace coppice

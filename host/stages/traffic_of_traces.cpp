@@ -1,0 +1,84 @@
+#include <algorithm>
+
+#include "stages/stages.h"
+
+// What the stages of traces and pictures move at least: "cost" in docs/kernels.md.
+namespace coppice::traffic {
+
+namespace {
+
+constexpr Bytes ray_and_hit = sizeof(Ray) + 2 * sizeof(Hit);  // the hit is read and written
+constexpr Bytes ray_and_word = sizeof(Ray) + sizeof(uint);
+
+// Of a sum over the whole trace, the part that `rays` of its rays have.
+Bytes share(Bytes sum, Bytes rays, const RunCounts& counts) {
+  if (counts.rays == 0) return 0;
+  return static_cast<Bytes>(static_cast<double>(sum) * static_cast<double>(rays) /
+                            static_cast<double>(counts.rays));
+}
+
+// Of a walk that visits so much over the whole trace.
+template <class Args>
+Bytes walk_bytes(const Args& args, Bytes per_ray, Bytes visited, const RunCounts& counts) {
+  const Bytes rays = args.count_at.value ? std::min<Bytes>(args.ray_count, counts.rays) : args.ray_count;
+  return rays * per_ray + share(visited, rays, counts);
+}
+
+Bytes pairs_of(const RunCounts& counts) { return counts.steps * 2 * sizeof(Node); }
+Bytes wide_nodes_of(const RunCounts& counts) { return counts.steps * sizeof(WideNode); }
+Bytes triangles_of(const RunCounts& counts) { return counts.hits * sizeof(Triangle); }
+
+}  // namespace
+
+Bytes camera_rays(const CameraRaysArgs& a, const RunCounts&) {
+  return Bytes{a.ray_count} * (sizeof(Ray) + sizeof(Hit));
+}
+
+Bytes trace_misses(const TraceMissesArgs& a, const RunCounts& counts) {
+  return walk_bytes(a, sizeof(Ray) + sizeof(Hit), 0, counts);
+}
+
+Bytes trace_closest(const TraceClosestArgs& a, const RunCounts& counts) {
+  return walk_bytes(a, ray_and_hit, pairs_of(counts) + triangles_of(counts), counts);
+}
+
+Bytes trace_wide(const TraceWideArgs& a, const RunCounts& counts) {
+  return walk_bytes(a, ray_and_hit, counts.steps / TRACE_PACKET * sizeof(WideNode) + triangles_of(counts),
+                    counts);
+}
+
+Bytes trace_wide_single(const TraceWideArgs& a, const RunCounts& counts) {
+  return walk_bytes(a, ray_and_hit, wide_nodes_of(counts) + triangles_of(counts), counts);
+}
+
+Bytes trace_any(const TraceAnyArgs& a, const RunCounts& counts) {
+  return walk_bytes(a, ray_and_word, pairs_of(counts) + triangles_of(counts), counts);
+}
+
+Bytes trace_wide_any(const TraceWideAnyArgs& a, const RunCounts& counts) {
+  return walk_bytes(a, ray_and_word, wide_nodes_of(counts) + triangles_of(counts), counts);
+}
+
+// Of each ray with candidates at least one is written.
+Bytes trace_candidates(const TraceCandidatesArgs& a, const RunCounts& counts) {
+  return walk_bytes(a, ray_and_word, pairs_of(counts) + counts.hits * sizeof(BoxCandidate), counts);
+}
+
+Bytes trace_brute_force(const TraceBruteForceArgs& a, const RunCounts&) {
+  return a.ray_count * ray_and_hit + a.triangle_count * sizeof(Triangle);
+}
+
+Bytes bounce_rays(const BounceRaysArgs& a, const RunCounts& counts) {
+  return a.ray_count * (2 * (sizeof(Ray) + sizeof(Hit))) +
+         share(counts.hits, a.ray_count, counts) * sizeof(Triangle);
+}
+
+Bytes shade(const ShadeArgs& a, const RunCounts& counts) {
+  const Bytes radiance = sizeof(vec3) * (a.sample_index == 0 ? 1 : 2);
+  return a.ray_count * (sizeof(Ray) + 4 + radiance) +
+         share(counts.hits, a.ray_count, counts) * (4 + sizeof(SurfaceMaterial) + sizeof(Triangle));
+}
+
+Bytes resolve(const ResolveArgs& a, const RunCounts&) { return Bytes{a.ray_count} * (sizeof(vec3) + 4); }
+
+}  // namespace coppice::traffic
