@@ -65,6 +65,7 @@ std::vector<Hit> through_tree(std::vector<Node>& nodes, std::vector<Triangle>& t
   args.counters.value = address_of(counters);
   args.state.value = address_of(state);
   args.ray_count = static_cast<std::uint32_t>(rays.size());
+  args.ray_mask = PRIMITIVE_MASK;
   args.stack_entries = TRACE_STACK_LIMIT;
   args.triangle_test = TRIANGLE_WATERTIGHT;
   args.box_test = BOX_ROBUST;
