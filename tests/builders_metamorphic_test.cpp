@@ -7,7 +7,7 @@
 #include "analysis/quality.h"
 #include "analysis/validate.h"
 #include "builders/registry.h"
-#include "pipeline/build.h"
+#include "pipeline/build_plan.h"
 #include "support/builders.h"
 #include "support/metamorphic.h"
 #include "support/split_trees.h"

@@ -11,8 +11,8 @@
 
 #include "analysis/tree_hash.h"
 #include "interface/sort.h"
-#include "pipeline/scan.h"
-#include "pipeline/wide.h"
+#include "pipeline/scan_plan.h"
+#include "pipeline/wide_plan.h"
 #include "scene/random.h"
 #include "stages/errors.h"
 #include "support/counted_run.h"

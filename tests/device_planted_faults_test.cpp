@@ -9,9 +9,9 @@
 
 #include "measure/copy_limit.h"
 #include "pipeline/batch.h"
-#include "pipeline/scan.h"
+#include "pipeline/scan_plan.h"
 #include "pipeline/trace_any.h"
-#include "pipeline/wide.h"
+#include "pipeline/wide_plan.h"
 #include "render/frame.h"
 #include "scene/hard_cases.h"
 #include "stages/lockstep_executor.h"

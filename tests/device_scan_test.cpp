@@ -4,7 +4,7 @@
 
 #include <numeric>
 
-#include "pipeline/scan.h"
+#include "pipeline/scan_plan.h"
 #include "scene/random.h"
 #include "stages/errors.h"
 #include "stages/lockstep_executor.h"

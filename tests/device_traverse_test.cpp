@@ -8,7 +8,7 @@
 #include "analysis/compare.h"
 #include "analysis/hard_rays.h"
 #include "builders/ploc.h"
-#include "pipeline/wide.h"
+#include "pipeline/wide_plan.h"
 #include "scene/hard_cases.h"
 #include "support/lockstep.h"
 #include "support/traced.h"

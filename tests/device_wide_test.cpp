@@ -3,7 +3,7 @@
 
 #include "analysis/wide_tree.h"
 #include "builders/registry.h"
-#include "pipeline/wide.h"
+#include "pipeline/wide_plan.h"
 #include "render/frame.h"
 #include "scene/hard_cases.h"
 #include "stages/lockstep_executor.h"

@@ -6,10 +6,10 @@
 #include "measure/copy_limit.h"
 #include "measure/traffic.h"
 #include "pipeline/batch.h"
-#include "pipeline/build.h"
-#include "pipeline/scan.h"
+#include "pipeline/build_plan.h"
+#include "pipeline/scan_plan.h"
 #include "pipeline/trace_any.h"
-#include "pipeline/wide.h"
+#include "pipeline/wide_plan.h"
 #include "stages/stages.h"
 
 namespace coppice {

@@ -8,7 +8,7 @@
 #include "builders/morton_crowding.h"
 #include "builders/ploc.h"
 #include "measure/traffic.h"
-#include "pipeline/trace.h"
+#include "pipeline/trace_plan.h"
 #include "scene/hard_cases.h"
 #include "support/wide.h"
 

@@ -10,7 +10,7 @@
 
 #include "builders/ploc.h"
 #include "pipeline/trace_pieces.h"
-#include "pipeline/wide.h"
+#include "pipeline/wide_plan.h"
 #include "render/frame.h"
 #include "scene/hard_cases.h"
 #include "stages/cpu_executor.h"

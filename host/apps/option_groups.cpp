@@ -5,7 +5,7 @@
 
 #include "builders/registry.h"
 #include "interface/ploc.h"
-#include "pipeline/build.h"
+#include "pipeline/build_plan.h"
 #include "scene/printable.h"
 #include "scene/view.h"
 

@@ -7,7 +7,7 @@
 
 #include "measure/builder_choice.h"
 #include "pipeline/checked_device.h"
-#include "pipeline/trace.h"
+#include "pipeline/trace_plan.h"
 #include "scene/scene_source.h"
 
 namespace coppice {

@@ -6,7 +6,7 @@
 #include "library/build_input.h"
 #include "library/state.h"
 #include "pipeline/primitives.h"
-#include "pipeline/wide.h"
+#include "pipeline/wide_plan.h"
 
 namespace coppice {
 

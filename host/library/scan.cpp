@@ -1,7 +1,7 @@
 #include "coppice/scan.h"
 
 #include "library/state.h"
-#include "pipeline/scan.h"
+#include "pipeline/scan_plan.h"
 
 namespace coppice {
 

@@ -2,7 +2,7 @@
 
 #include "interface/sort.h"
 #include "library/state.h"
-#include "pipeline/build.h"
+#include "pipeline/build_plan.h"
 
 namespace coppice {
 

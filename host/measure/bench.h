@@ -11,7 +11,7 @@
 #include "measure/steady_state.h"
 #include "measure/table.h"
 #include "pipeline/checked_device.h"
-#include "pipeline/trace.h"
+#include "pipeline/trace_plan.h"
 #include "scene/scene_source.h"
 
 namespace coppice {

@@ -2,7 +2,7 @@
 #include <numeric>
 
 #include "measure/bench.h"
-#include "pipeline/scan.h"
+#include "pipeline/scan_plan.h"
 #include "scene/random.h"
 #include "stages/errors.h"
 #include "stages/gpu_executor.h"

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "builders/registry.h"
-#include "pipeline/build.h"
+#include "pipeline/build_plan.h"
 
 namespace coppice {
 

@@ -4,7 +4,7 @@
 
 #include "measure/comparison_text.h"
 #include "measure/table.h"
-#include "pipeline/build.h"
+#include "pipeline/build_plan.h"
 
 namespace coppice {
 

@@ -3,7 +3,7 @@
 #include "measure/build_report.h"
 #include "measure/builder_choice.h"
 #include "pipeline/checked_device.h"
-#include "pipeline/wide.h"
+#include "pipeline/wide_plan.h"
 #include "scene/scene.h"
 
 namespace coppice {

@@ -6,7 +6,7 @@
 #include "measure/build_report.h"
 #include "measure/builder_choice.h"
 #include "pipeline/checked_device.h"
-#include "pipeline/trace.h"
+#include "pipeline/trace_plan.h"
 #include "scene/scene.h"
 
 namespace coppice {

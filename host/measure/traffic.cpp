@@ -1,6 +1,6 @@
 #include "measure/traffic.h"
 
-#include "pipeline/trace.h"
+#include "pipeline/trace_plan.h"
 
 namespace coppice {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "interface/batch.h"
-#include "pipeline/build.h"
+#include "pipeline/build_plan.h"
 #include "pipeline/primitives.h"
 
 namespace coppice {

@@ -1,9 +1,10 @@
+#include "pipeline/build_plan.h"
+
 #include <algorithm>
 #include <stdexcept>
 #include <string>
 
 #include "interface/sort.h"
-#include "pipeline/build.h"
 #include "stages/divide_up.h"
 
 namespace coppice {

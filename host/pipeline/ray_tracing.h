@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "pipeline/pace.h"
-#include "pipeline/trace.h"
 #include "pipeline/trace_any.h"
-#include "pipeline/wide.h"
+#include "pipeline/trace_plan.h"
+#include "pipeline/wide_plan.h"
 #include "stages/cpu_executor.h"
 #include "stages/gpu_executor.h"
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "pipeline/wide.h"
+#include "pipeline/wide_plan.h"
 #include "stages/cpu_executor.h"
 #include "stages/gpu_executor.h"
 #include "stages/nearly.h"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "gpu/device.h"
-#include "pipeline/trace.h"
+#include "pipeline/trace_plan.h"
 #include "stages/chain.h"
 
 namespace coppice {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pipeline/trace.h"
+#include "pipeline/trace_plan.h"
 
 namespace coppice {
 

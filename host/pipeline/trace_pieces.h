@@ -1,7 +1,7 @@
 #pragma once
 
-#include "pipeline/trace.h"
 #include "pipeline/trace_any.h"
+#include "pipeline/trace_plan.h"
 
 namespace coppice {
 

@@ -4,8 +4,8 @@
 #include <span>
 
 #include "builders/bvh.h"
-#include "pipeline/trace.h"
-#include "pipeline/wide.h"
+#include "pipeline/trace_plan.h"
+#include "pipeline/wide_plan.h"
 #include "render/film.h"
 #include "render/scene_arrays.h"
 

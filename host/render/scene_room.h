@@ -6,7 +6,7 @@
 #include <string>
 
 #include "gpu/device.h"
-#include "pipeline/build.h"
+#include "pipeline/build_plan.h"
 #include "scene/scene_source.h"
 
 namespace coppice {

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "pipeline/build.h"
+#include "pipeline/build_plan.h"
 #include "pipeline/ray_tracing.h"
 #include "support/test_device.h"
 

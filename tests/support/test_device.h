@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "gpu/device.h"
-#include "pipeline/build.h"
-#include "pipeline/trace.h"
+#include "pipeline/build_plan.h"
+#include "pipeline/trace_plan.h"
 #include "scene/scene.h"
 
 namespace coppice {

@@ -1,7 +1,7 @@
 #include "support/traced.h"
 
 #include "analysis/compare.h"
-#include "pipeline/wide.h"
+#include "pipeline/wide_plan.h"
 #include "stages/lockstep_executor.h"
 
 namespace coppice {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "pipeline/wide.h"
+#include "pipeline/wide_plan.h"
 #include "stages/cpu_executor.h"
 
 namespace coppice {

@@ -1,4 +1,4 @@
-#include "pipeline/trace.h"
+#include "pipeline/trace_plan.h"
 
 #include <algorithm>
 #include <bit>

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "interface/trace.h"
-#include "pipeline/build.h"
+#include "pipeline/build_plan.h"
 #include "pipeline/ray_filter.h"
 #include "pipeline/walk.h"
 

@@ -1,4 +1,4 @@
-#include "pipeline/scan.h"
+#include "pipeline/scan_plan.h"
 
 #include <algorithm>
 #include <stdexcept>

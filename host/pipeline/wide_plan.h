@@ -1,6 +1,6 @@
 #pragma once
 
-#include "pipeline/build.h"
+#include "pipeline/build_plan.h"
 
 namespace coppice {
 

@@ -1,4 +1,4 @@
-#include "pipeline/wide.h"
+#include "pipeline/wide_plan.h"
 
 #include <algorithm>
 #include <cstddef>

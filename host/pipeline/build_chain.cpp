@@ -1,9 +1,8 @@
-#include "pipeline/build.h"
-
 #include <algorithm>
 #include <cstddef>
 #include <vector>
 
+#include "pipeline/build_plan.h"
 #include "stages/divide_up.h"
 #include "stages/stages.h"
 

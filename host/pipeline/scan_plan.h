@@ -1,7 +1,7 @@
 #pragma once
 
 #include "interface/scan.h"
-#include "pipeline/build.h"
+#include "pipeline/build_plan.h"
 
 namespace coppice {
 
