@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 
 #include "render/scene_room.h"
@@ -42,6 +43,9 @@ Scene open_scene_of(const SceneOptions& options, const BuilderChoice& builder, c
 
 CheckedDevice open_device(const DeviceSetup& device, const DeviceUse& use) {
   DeviceOptions options = device.options;
+  // For tests: as a device without timestamps.
+  if (const char* const without = std::getenv("COPPICE_NO_TIMESTAMPS"); without && *without)
+    options.timestamps = false;
   options.pipeline_folder = cache_folder();
   DeviceChoices choices = device.choices;
   choices.slow_driver_remedy = remedy_of_slow_driver();

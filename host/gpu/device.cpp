@@ -235,8 +235,7 @@ Device::Device(const DeviceOptions& options) {
   context.log = options.log;
   context.like_a_gpu = options.like_a_gpu;
   in_one_line([&] {
-    const char* const no_timestamps = std::getenv("COPPICE_NO_TIMESTAMPS");
-    context.timestamps = options.timestamps && !(no_timestamps && *no_timestamps);
+    context.timestamps = options.timestamps;
     context.instance = make_instance(context.loader, options.validate);
     if (options.validate) {
       using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;

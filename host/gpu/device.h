@@ -34,8 +34,7 @@ struct DeviceOptions {
   // a subgroup wait for each other.
   bool like_a_gpu = false;
   std::filesystem::path pipeline_folder{};  // compiled pipelines are kept here between runs; empty: nowhere
-  // Off: as a device without timestamps, for tests. Off, too, where COPPICE_NO_TIMESTAMPS is set and not
-  // empty.
+  // Off: as a device without timestamps, for tests.
   bool timestamps = true;
   Log log{};
 };
