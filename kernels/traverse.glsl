@@ -71,12 +71,13 @@ Hit coppice_search(CoppiceWideTree tree, Ray given, uint mask, const bool any) {
   Node root = tree.nodes.at[0];
   walk.sight = Sight(tree.primitive_flags, mask);
   walk.top = 0u;
-  start_walk(Aabb(root.box_min, root.box_max), so_far, walk);
+  const Search search = Search(any, true);
+  start_walk(Aabb(root.box_min, root.box_max), search, so_far, walk);
   WideTree nodes = WideTree(tree.wide_nodes, tree.triangles);
   [[dont_unroll]] while (has_ray(walk)) {
-    if (walk.next == NEXT_CHILD) take_child(nodes, walk, 0u);
-    if (is_at_node(walk)) visit_node(walk, load_node_words(tree.wide_nodes, walk.next), 0u);
-    else if (has_ray(walk) && walk.next != NEXT_CHILD) test_triangle(nodes, Search(any, true), walk);
+    if (walk.next == NEXT_CHILD) take_child(nodes, search, walk, 0u);
+    if (is_at_node(walk)) visit_node(search, walk, load_node_words(tree.wide_nodes, walk.next), 0u);
+    else if (has_ray(walk) && walk.next != NEXT_CHILD) test_triangle(nodes, search, walk);
   }
   keep_given(walk.ray, given, walk.hit, so_far);
   return so_far;

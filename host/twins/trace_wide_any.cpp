@@ -6,7 +6,7 @@
 #include "twins/intersect.h"
 #include "twins/sight.h"
 #include "twins/trace_counts.h"
-#include "twins/wide_children.h"
+#include "twins/wide_distances.h"
 
 namespace coppice::twins {
 
@@ -18,22 +18,26 @@ bool hits_triangle(const TraceWideAnyArgs& args, const TraceRay& ray, uint trian
   return hit.triangle != NO_TRIANGLE && !std::isinf(ray.given_t(hit.t));
 }
 
-// The walk of trace_wide_single, up to the first hit. Counts the nodes it visits.
+// Depth-first, children in the order of their slots, up to the first hit. Counts the nodes it visits.
 bool hits_any(const TraceWideAnyArgs& args, const TraceRay& ray, const Sight& sight, float t_max,
               uint& visited) {
   const Node& root = args.nodes[0];
   const WideDistances distances(ray, root.box_min, root.box_max);
   const float limit = distances.of_hit(t_max);
-  for (std::vector<WideChildVisit> stack = {{0, 0}}; !stack.empty();) {
-    const WideChildVisit visit = stack.back();
+  for (std::vector<uint> stack = {0}; !stack.empty();) {
+    const uint word = stack.back();
     stack.pop_back();
-    if (visit.word < WIDE_LEAF) {
+    if (word < WIDE_LEAF) {
       ++visited;
-      const std::vector<WideChildVisit> met = met_children(args.wide_nodes[visit.word], distances, limit);
-      stack.insert(stack.end(), met.begin(), met.end());
+      const WideNode& node = args.wide_nodes[word];
+      for (uint child = WIDE_CHILDREN; child-- > 0;) {
+        float enter;
+        if (node.child[child] != WIDE_EMPTY && distances.meet(node, child, limit, enter))
+          stack.push_back(node.child[child]);
+      }
       continue;
     }
-    const uint triangle = visit.word & ~WIDE_LEAF;
+    const uint triangle = word & ~WIDE_LEAF;
     if (sight.sees_opaque(triangle) && hits_triangle(args, ray, triangle, t_max)) return true;
   }
   return false;

@@ -1,3 +1,4 @@
+#include <functional>
 #include <vector>
 
 #include "interface/trace.h"
@@ -5,11 +6,36 @@
 #include "twins/intersect.h"
 #include "twins/sight.h"
 #include "twins/trace_counts.h"
-#include "twins/wide_children.h"
+#include "twins/wide_distances.h"
 
 namespace coppice::twins {
 
 namespace {
+
+// A child of a wide node that a ray meets.
+struct WideChildVisit {
+  uint kept;  // bits of the distance
+  uint word;  // of the child
+};
+
+// The children that the ray meets up to `limit`, the nearest last, as a stack has them.
+std::vector<WideChildVisit> met_children(const WideNode& node, const WideDistances& distances, float limit) {
+  struct Met {
+    uint key;
+    WideChildVisit visit;
+  };
+  std::vector<Met> met;
+  for (uint child = 0; child < WIDE_CHILDREN; ++child) {
+    float enter;
+    if (node.child[child] == WIDE_EMPTY || !distances.meet(node, child, limit, enter)) continue;
+    met.push_back({(std::bit_cast<uint>(enter) & ~(WIDE_CHILDREN - 1)) | child,
+                   {WideDistances::kept_bits(enter), node.child[child]}});
+  }
+  std::ranges::sort(met, std::greater(), &Met::key);
+  std::vector<WideChildVisit> visits;
+  for (const Met& child : met) visits.push_back(child.visit);
+  return visits;
+}
 
 // Depth-first, nearest child first. Returns how many nodes it visited.
 uint trace(const TraceWideArgs& args, const TraceRay& ray, const Sight& sight, Hit& hit) {

@@ -33,7 +33,7 @@ uint count_of(bool x) { return subgroupBallotBitCount(subgroupBallot(x)); }
 // Every ray that walks goes on by a node. Returns how many of the subgroup's still walk.
 uint step_walks(WideTree tree) {
   [[unroll]] for (uint k = 0u; k < TRACE_RAYS; ++k)
-    if (walks[k].next == NEXT_CHILD) take_child(tree, walks[k], k);
+    if (walks[k].next == NEXT_CHILD) take_child(tree, SEARCH, walks[k], k);
   NodeWords words[TRACE_RAYS];  // of node 0 for rays that are at none; without a tree that is what follows the slot
   [[unroll]] for (uint k = 0u; k < TRACE_RAYS; ++k)
     words[k] = load_node_words(tree.wide_nodes, is_at_node(walks[k]) ? walks[k].next : 0u);
@@ -41,7 +41,7 @@ uint step_walks(WideTree tree) {
   [[unroll]] for (uint k = 0u; k < TRACE_RAYS; ++k) {
     if (is_at_node(walks[k])) {
       ++visited;
-      visit_node(walks[k], words[k], k);
+      visit_node(SEARCH, walks[k], words[k], k);
     }
     walking += count_of(walks_on(walks[k]));
   }
@@ -78,7 +78,7 @@ uint take_ray(inout Walk w, uint index, bool has_tree, Aabb scene) {
   w.sight = Sight(args.primitive_flags, args.ray_mask);
   if (TRACE_MASKED) w.sight.mask = mask_of(args.ray_masks, args.ray_mask, index);
   w.ray_index = index;
-  start_walk(scene, so_far, w);
+  start_walk(scene, SEARCH, so_far, w);
   return 0u;
 }
 
