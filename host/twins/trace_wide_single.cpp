@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <bit>
 #include <functional>
 #include <vector>
 
