@@ -93,7 +93,7 @@ void main() {
   bool has_tree = args.state.at[0].active_count != 0u;
   if (has_tree && args.nodes.at[0].height > TRACE_STACK) {
     atomicOr(args.state.at[0].error_word, ERROR_TREE_TOO_DEEP);
-    return;
+    has_tree = false;
   }
   uint steps = 0u;
   Collection c;

@@ -149,6 +149,15 @@ TEST_F(LibraryErrors, BadArgumentsAreNamedAndNothingIsRecorded) {
   own().run(commands);
   EXPECT_TRUE(std::ranges::all_of(tree.as<std::uint8_t>(), [](std::uint8_t byte) { return byte == 0; }));
 
+  const Tracer tracer(context());
+  RayInput rays;
+  rays.rays = triangles.address;
+  rays.count.maximum = MAX_RAYS + 1;
+  EXPECT_EQ(thrown_by<ArgumentError>([&] {
+              tracer.cmd_trace_closest(commands, builder.triangle_tree(range_of(tree)), rays, tree.address,
+                                       range_of(scratch));
+            }),
+            "count: 4194241 are more than the maximum, 4194240");
   EXPECT_NE(thrown_by<ArgumentError>([&] { Builder(context(), 1000, {.radius = 101}); }).find("radius 101"),
             std::string::npos);
   EXPECT_NE(thrown_by<ArgumentError>([&] { Builder(context(), 1000, {.morton_bits = 31}); }).find("31"),
@@ -221,6 +230,10 @@ TEST_F(LibraryErrors, WithoutAQueueNothingIsCheckedAndTheLogSaysSo) {
   options.log = [&](std::string_view line) { lines.emplace_back(line); };
   const Context unchecked(device, options);
   const Scanner scanner(unchecked, 100);
+  // Without lookback a sort of few keys would have an odd number of passes, and not end where it began.
+  const Sorter sorter(unchecked, 20000);
+  expect_sorted(sorter, {}, 20000, 20000, own(), false);
+  expect_sorted(sorter, {}, 20000, 300, own(), true);
   ASSERT_FALSE(lines.empty());
   EXPECT_NE(lines[0].find("no queue was given"), std::string::npos);
   EXPECT_EQ(unchecked.queue(), VK_NULL_HANDLE);

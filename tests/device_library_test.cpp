@@ -85,6 +85,36 @@ TEST_F(Library, ABuilderOfManyBuildsFew) {
   }
 }
 
+TEST_F(Library, SizesAreKnownBeforeABuilderIs) {
+  for (const std::uint32_t most : {0u, 1u, 20000u}) {
+    const BuildSizes before = build_sizes(context(), most, {.wide = true});
+    const BuildSizes sizes = Builder(context(), most, {.wide = true}).sizes();
+    EXPECT_GE(before.tree_bytes, sizes.tree_bytes);
+    EXPECT_GE(before.scratch_bytes, sizes.scratch_bytes);
+    EXPECT_GT(sizes.tree_bytes, 0u);
+  }
+}
+
+TEST_F(Library, RaysThroughNoTreeHitNothing) {
+  const Built built = build(Builder(context(), 0), TriangleInput{});
+  const Tracer tracer(context());
+  const auto scratch = own().make_buffer(tracer.scratch_bytes()), hits = own().make_buffer(10 * sizeof(Hit));
+  const auto any_hits = own().make_buffer(10 * 4);
+  std::ranges::fill(any_hits.as<uint>(), 7);
+  RayInput input;
+  input.rays = upload(std::vector<Ray>(10, Ray{{0, 0, 0}, 0, {0, 0, 1}, 5})).address;
+  input.count.maximum = 10;
+  const VkCommandBuffer commands = own().begin();
+  tracer.cmd_trace_closest(commands, built.addresses, input, hits.address, range_of(scratch));
+  tracer.cmd_trace_any(commands, built.addresses, input, any_hits.address, range_of(scratch));
+  own().run(commands);
+  for (std::uint32_t i = 0; i < 10; ++i) {
+    EXPECT_EQ(hits.as<Hit>()[i].triangle, NO_TRIANGLE);
+    EXPECT_EQ(hits.as<Hit>()[i].t, 5);
+    EXPECT_EQ(any_hits.as<uint>()[i], 0u);
+  }
+}
+
 TEST_F(Library, IndicesStridesAndTransformsAreTheTrianglesTheyStandFor) {
   constexpr std::uint32_t count = 3000, vertex_count = 2000;
   const std::vector<Triangle> corners = random_triangles(vertex_count, 1);

@@ -33,13 +33,15 @@ Buffer make_buffer(VulkanContext& context, std::uint64_t bytes, vk::BufferUsageF
   Buffer result;
   result.bytes = bytes;
   try {
-    result.buffer = vk::raii::Buffer(context.device, {{}, bytes, usage, vk::SharingMode::eExclusive});
+    result.buffer =
+        vk::raii::Buffer(context.device, {{}, bytes, usage, vk::SharingMode::eExclusive}, context.allocator);
     const auto needs = result.buffer.getMemoryRequirements();
     const bool addressed = bool(usage & vk::BufferUsageFlagBits::eShaderDeviceAddress);
     const vk::MemoryAllocateFlagsInfo address_flag(addressed ? vk::MemoryAllocateFlagBits::eDeviceAddress
                                                              : vk::MemoryAllocateFlags());
     result.memory = vk::raii::DeviceMemory(
-        context.device, {needs.size, context.memory_type(needs.memoryTypeBits, flags), &address_flag});
+        context.device, {needs.size, context.memory_type(needs.memoryTypeBits, flags), &address_flag},
+        context.allocator);
     result.buffer.bindMemory(*result.memory, 0);
     if (addressed) result.address = context.device.getBufferAddress({*result.buffer});
     if (flags & vk::MemoryPropertyFlagBits::eHostVisible) result.mapped = map(result.memory, bytes);

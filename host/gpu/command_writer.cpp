@@ -66,23 +66,22 @@ vk::Pipeline pipeline_for(VulkanContext& context, const Kernel& kernel) {
   if (kernel.specialization.size() > key.constants.size())
     throw std::logic_error("kernel with too many constants");
   std::ranges::copy(kernel.specialization, key.constants.begin());
-  {
+  const auto find = [&]() -> vk::Pipeline {
     const std::shared_lock lock(context.pipeline_mutex);
-    if (const auto found = context.pipelines.find(key); found != context.pipelines.end())
-      return *found->second;
-  }
+    const auto found = context.pipelines.find(key);
+    return found == context.pipelines.end() ? vk::Pipeline() : *found->second;
+  };
+  if (const vk::Pipeline pipeline = find()) return pipeline;
+  const std::lock_guard compiling(context.compile_mutex);
+  if (const vk::Pipeline pipeline = find()) return pipeline;
+  vk::raii::Pipeline made = with_device_errors(context, [&] { return make_pipeline(context, kernel); });
   const std::unique_lock lock(context.pipeline_mutex);
-  auto found = context.pipelines.find(key);
-  if (found == context.pipelines.end())
-    found = context.pipelines.emplace(key, make_pipeline(context, kernel)).first;
-  return *found->second;
+  return *context.pipelines.emplace(key, std::move(made)).first->second;
 }
 
 }  // namespace
 
-void prepare(Device& device, const Kernel& kernel) {
-  with_device_errors(device.context(), [&] { pipeline_for(device.context(), kernel); });
-}
+void prepare(Device& device, const Kernel& kernel) { pipeline_for(device.context(), kernel); }
 
 // All earlier steps before all later ones: kernels, clears and the words of indirect dispatches.
 void CommandWriter::barrier() {

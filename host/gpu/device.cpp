@@ -130,6 +130,7 @@ void take_device(VulkanContext& context, const AdoptedDevice& given) {
   context.adopted = true;
   context.allocator = reinterpret_cast<const vk::AllocationCallbacks*>(given.allocator);
   context.instance = vk::raii::Instance(context.loader, given.instance);
+  if (const std::string reason = why_unsuitable(context.instance); !reason.empty()) throw DeviceError(reason);
   context.physical = vk::raii::PhysicalDevice(context.instance, given.physical_device);
   const std::string name = context.physical.getProperties().deviceName.data();
   if (const std::string reason = why_unsuitable(context.physical); !reason.empty())
@@ -145,6 +146,9 @@ void take_device(VulkanContext& context, const AdoptedDevice& given) {
     throw DeviceError(name + ": the queue family " + std::to_string(given.queue_family) + " cannot compute");
   context.queue_family = given.queue_family;
   context.device = vk::raii::Device(context.physical, given.device);
+  const auto& functions = *context.device.getDispatcher();
+  if (!functions.vkCmdPipelineBarrier2 || !functions.vkQueueSubmit2 || !functions.vkGetBufferDeviceAddress)
+    throw DeviceError(name + ": the device has no functions of Vulkan 1.3");
   if (given.queue) context.queue = vk::raii::Queue(context.device, given.queue);
   equip(context);
   if (given.pipeline_cache) {

@@ -88,8 +88,9 @@ std::string file_name_of(std::string_view stem, const vk::raii::PhysicalDevice& 
 }
 
 void load_pipelines(VulkanContext& context, const fs::path& folder) {
-  if (folder.empty() || context.adopted_cache) return;
+  if (folder.empty()) return;
   context.pipeline_file = folder / file_name_of("pipelines", context.physical);
+  if (context.adopted_cache) return;
   context.kept_pipelines = read_blob(context.pipeline_file, context.physical.getProperties());
   const std::vector<std::uint8_t>& blob = context.kept_pipelines;
   context.pipeline_cache =
@@ -97,7 +98,7 @@ void load_pipelines(VulkanContext& context, const fs::path& folder) {
 }
 
 void store_pipelines(const VulkanContext& context) noexcept {
-  if (context.pipeline_file.empty() || context.pipelines.empty()) return;
+  if (context.adopted_cache || !*context.pipeline_cache || context.pipelines.empty()) return;
   try {
     const std::vector<std::uint8_t> blob = context.pipeline_cache.getData();
     if (blob != context.kept_pipelines) write_blob(context.pipeline_file, blob);

@@ -74,7 +74,8 @@ Recorder::Recorder(Device& device, const Arena& arena, std::uint32_t step_limit,
     c.query_limit = 2 * step_limit + 2;
     c.buffer.begin(vk::CommandBufferBeginInfo());
     if (c.context.properties.timestamp_period_ns > 0) {
-      c.queries = vk::raii::QueryPool(c.context.device, {{}, vk::QueryType::eTimestamp, c.query_limit});
+      c.queries = vk::raii::QueryPool(c.context.device, {{}, vk::QueryType::eTimestamp, c.query_limit},
+                                      c.context.allocator);
       c.buffer.resetQueryPool(*c.queries, 0, c.query_limit);
     }
     c.stamp();

@@ -70,6 +70,13 @@ std::string missing_feature(const VkPhysicalDeviceFeatures2& enabled) {
   return missing;
 }
 
+std::string why_unsuitable(const vk::raii::Instance& instance) {
+  // Loaders give no functions that are newer than what an instance was made for.
+  return instance.getDispatcher()->vkGetPhysicalDeviceProperties2
+             ? ""
+             : "the instance was made for less than Vulkan 1.3";
+}
+
 std::string why_unsuitable(const vk::raii::PhysicalDevice& physical) {
   const auto properties =
       physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties,
@@ -103,11 +110,15 @@ std::string why_unsuitable(const vk::raii::PhysicalDevice& physical) {
 
 std::string why_unsuitable(VkInstance instance, VkPhysicalDevice physical_device,
                            PFN_vkGetInstanceProcAddr get_instance_proc_addr) {
+  struct Borrowed {
+    vk::raii::Instance instance;
+    ~Borrowed() { (void)instance.release(); }
+  };
   const vk::raii::Context loader(get_instance_proc_addr ? get_instance_proc_addr : loader_entry());
-  vk::raii::Instance borrowed(loader, instance);
-  const std::string reason = why_unsuitable(vk::raii::PhysicalDevice(borrowed, physical_device));
-  (void)borrowed.release();
-  return reason;
+  const Borrowed borrowed{vk::raii::Instance(loader, instance)};
+  const std::string reason = why_unsuitable(borrowed.instance);
+  return reason.empty() ? why_unsuitable(vk::raii::PhysicalDevice(borrowed.instance, physical_device))
+                        : reason;
 }
 
 DeviceType device_type(vk::PhysicalDeviceType type) {

@@ -10,6 +10,9 @@ using FeatureChain = vk::StructureChain<vk::PhysicalDeviceFeatures2, vk::Physica
 // Those that are needed, and no others.
 FeatureChain required_features();
 
+// Empty for an instance that was made for Vulkan 1.3.
+std::string why_unsuitable(const vk::raii::Instance& instance);
+
 // The version, limit or feature that a device lacks, in words; empty for one that can be used.
 std::string why_unsuitable(const vk::raii::PhysicalDevice& physical);
 

@@ -62,6 +62,7 @@ struct VulkanContext {
   std::filesystem::path pipeline_file;
   std::vector<std::uint8_t> kept_pipelines;  // what the file held; empty: nothing of use
   std::shared_mutex pipeline_mutex;          // of `pipelines`
+  std::mutex compile_mutex;                  // one kernel at a time, while others record
   std::map<PipelineKey, vk::raii::Pipeline> pipelines;
   bool labels = false;  // debug labels can be recorded
   bool like_a_gpu = false;

@@ -22,7 +22,20 @@ struct Builder::Plan {
     }
   };
 
-  explicit Plan(Device& device) : device(device) {}
+  // Even of no primitives a tree has a place, which rays find empty.
+  Plan(Device& device, std::uint32_t max_primitives, const BuildOptions& options, bool wide)
+      : device(device) {
+    const std::uint32_t most = std::max(max_primitives, 1u);
+    triangles.build = plan_build(triangles.layout, most, options, PrimitiveKind::triangles);
+    boxes.build = plan_build(boxes.layout, most, options, PrimitiveKind::boxes);
+    // Rays of boxes find candidates in the binary tree only.
+    if (wide) triangles.wide = plan_wide(triangles.layout, triangles.build, &triangles.build);
+  }
+
+  BuildSizes sizes() const {
+    const auto most = [&](Memory memory) { return std::max(triangles.bytes(memory), boxes.bytes(memory)); };
+    return {most(Memory::tree), most(Memory::scratch), 0};
+  }
 
   Device& device;
   Primitives triangles, boxes;
@@ -37,17 +50,9 @@ struct Builder::Plan {
 Builder::Builder(const Context& context, std::uint32_t max_primitives, const TreeOptions& options) {
   with_argument_errors([&] { check_build(max_primitives, to_build_options(options)); });
   const BuildOptions checked = context.state().checked(to_build_options(options));
-  plan_ = std::make_unique<Plan>(context.state().device());
-  for (const PrimitiveKind kind : {PrimitiveKind::triangles, PrimitiveKind::boxes}) {
-    Plan::Primitives& plan = kind == PrimitiveKind::triangles ? plan_->triangles : plan_->boxes;
-    plan.build = plan_build(plan.layout, max_primitives, checked, kind);
-    // Rays of boxes find candidates in the binary tree only.
-    if (options.wide && kind == PrimitiveKind::triangles)
-      plan.wide = plan_wide(plan.layout, plan.build, &plan.build);
-  }
+  plan_ = std::make_unique<Plan>(context.state().device(), max_primitives, checked, options.wide);
   // Numbers at which other kernels run, or others of their variants.
-  for (const std::uint32_t count :
-       {max_primitives, std::min(max_primitives, 1u << 18), std::min(max_primitives, 1u)}) {
+  for (const std::uint32_t count : {std::max(max_primitives, 1u), std::min(max_primitives, 1u << 18), 1u}) {
     prepare_chain(plan_->device, [&](Chain& chain) {
       append_build(chain, with_count(plan_->triangles.build, count), {VertexTriangles{}, {}});
       append_build(chain, with_count(plan_->boxes.build, count), {GivenBoxes{}, {}});
@@ -60,11 +65,21 @@ Builder::Builder(const Context& context, std::uint32_t max_primitives, const Tre
 Builder::~Builder() = default;
 Builder::Builder(Builder&&) noexcept = default;
 
-BuildSizes Builder::sizes() const {
-  const auto most = [&](Memory memory) {
-    return std::max(plan_->triangles.bytes(memory), plan_->boxes.bytes(memory));
-  };
-  return {most(Memory::tree), most(Memory::scratch), 0};
+BuildSizes Builder::sizes() const { return plan_->sizes(); }
+
+BuildSizes build_sizes(const Context& context, std::uint32_t max_primitives, const TreeOptions& options) {
+  BuildOptions build = to_build_options(options);
+  with_argument_errors([&] { check_build(max_primitives, build); });
+  build.variants = context.state().variants();
+  BuildSizes most;
+  for (const bool lookback : {false, true}) {  // what a check would allow is not known
+    build.lookback = lookback;
+    const BuildSizes sizes =
+        Builder::Plan(context.state().device(), max_primitives, build, options.wide).sizes();
+    most.tree_bytes = std::max(most.tree_bytes, sizes.tree_bytes);
+    most.scratch_bytes = std::max(most.scratch_bytes, sizes.scratch_bytes);
+  }
+  return most;
 }
 
 TreeAddresses Builder::Plan::addresses(const Primitives& plan, const MemoryRange& tree) const {

@@ -26,7 +26,16 @@ Context::State::State(const AdoptedDevice& device, const ContextOptions& options
 
 bool Context::State::check(const DeviceUse& use) {
   const std::lock_guard lock(check_mutex_);
-  if (device_.queue()) return kept_check_device(device_, use);
+  if (device_.queue()) {
+    const auto [verdict, is_new] = verdicts_.try_emplace(line_of(use), false);
+    if (!is_new) return verdict->second;
+    try {
+      return verdict->second = kept_check_device(device_, use);
+    } catch (...) {
+      verdicts_.erase(verdict);
+      throw;
+    }
+  }
   device_.say("no queue was given: nothing is checked, and no prefix sums are made by lookback");
   return false;
 }

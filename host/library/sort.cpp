@@ -16,7 +16,7 @@ namespace {
 
 // With digits of 8 bits the number of passes is even, so that the last one ends where the first began.
 BuildOptions in_place(BuildOptions options) {
-  if (options.variants.sort == SORT_SCAN || options.variants.sort == SORT_SCAN_11)
+  if (!options.lookback || options.variants.sort == SORT_SCAN || options.variants.sort == SORT_SCAN_11)
     options.variants.sort = SORT_SCAN_8;
   return options;
 }

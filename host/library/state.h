@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <mutex>
 
 #include "coppice/build.h"
@@ -30,6 +31,7 @@ class Context::State {
   Device device_;
   Variants variants_;
   std::mutex check_mutex_;
+  std::map<std::string, bool> verdicts_;  // by line_of the use
 };
 
 // The memory of a call, one for each kind of a Layout, and what it is at.

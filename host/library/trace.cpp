@@ -1,5 +1,8 @@
 #include "coppice/trace.h"
 
+#include <algorithm>
+
+#include "interface/trace.h"
 #include "library/state.h"
 #include "pipeline/trace_any.h"
 #include "stages/stages.h"
@@ -24,6 +27,9 @@ struct TraceCall {
       : memory(device), options(options) {
     check_address(addresses.nodes, 16, false, "tree.nodes");
     check_address(addresses.state, 16, false, "tree.state");
+    check_address(addresses.triangles, 4, true, "tree.triangles");
+    check_address(addresses.wide_nodes, 16, true, "tree.wide_nodes");
+    check_address(addresses.wide_counts, 16, true, "tree.wide_counts");
     // As many as there may be: their numbers are on the device.
     constexpr std::uint64_t most = std::uint64_t{1} << 32;
     tree.triangles = memory.slot_at<Triangle>(addresses.triangles, most);
@@ -40,7 +46,7 @@ struct TraceCall {
   }
 
   RayFilter filter_of(const RayInput& rays) {
-    check_address(rays.count.address, 4, true, "count");
+    check_count(rays.count, MAX_RAYS, "count");
     check_address(rays.primitive_flags, 4, true, "primitive_flags");
     check_address(rays.ray_masks, 4, true, "ray_masks");
     RayFilter filter;
@@ -53,6 +59,8 @@ struct TraceCall {
 };
 
 }  // namespace
+
+static_assert(std::min(TRACE_GROUP, TRACE_PACKET) >= 64, "MAX_RAYS is what one dispatch takes");
 
 struct Tracer::Plan {
   Plan(Device& device, TraceTree tree)

@@ -66,11 +66,13 @@ void set_sort(BuildPlan& plan) {
   plan.unsorted_values = plan.values[plan.sort.passes % 2];
 }
 
-// Large enough for a sort of fewer keys, too: of few the digits may be wider.
+// Large enough for a sort of any number of fewer keys, too: their digits may be wider.
 std::uint64_t most_tile_digits(std::uint32_t key_count, const BuildOptions& options) {
   const auto digits = [&](std::uint32_t count) {
     const SortPlan sort = plan_passes(count, options);
-    return std::uint64_t{sort.tile_count} << sort.digit_bits;
+    // Where tiles get larger there are fewer of more keys.
+    const std::uint32_t most = std::min(divide_up(count, SORT_SCAN_TILE), most_scanned_tiles);
+    return std::uint64_t{sort.onesweep ? sort.tile_count : most} << sort.digit_bits;
   };
   return std::max(digits(key_count), digits(std::min(key_count, wide_digit_keys)));
 }

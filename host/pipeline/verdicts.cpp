@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <atomic>
 #include <cstdio>
 #include <fstream>
 #include <map>
@@ -37,20 +38,6 @@ std::string head_of(const DeviceProperties& device) {
   return head + (device.shared_memory ? "" : " like a GPU");
 }
 
-// All that decides what a check does, in one word.
-std::string line_of(const DeviceUse& use) {
-  std::ostringstream text;
-  const BuildOptions& build = use.build;
-  text << "build:" << use.builds << ':' << static_cast<int>(build.builder) << ':' << build.radius << ':'
-       << build.morton_bits << ':' << build.lookback_turns << ':' << build.lookback_max_fallbacks << ':'
-       << build.lookback_stress << ':' << to_string(build.variants);
-  for (const TraceOptions& trace : use.traces) {
-    text << ";trace:" << name_of(trace.walk) << ':' << trace.max_turns << ':' << trace.visits_per_turn << ':'
-         << trace.stack_entries << ':' << trace.triangle_test << ':' << trace.box_test;
-  }
-  return text.str();
-}
-
 // Verdicts by use; empty for a file of others.
 std::map<std::string, bool> read_verdicts(const fs::path& path, const std::string& head) {
   std::istringstream stream(read_kept_file(path, most_verdict_bytes).bytes);
@@ -70,7 +57,8 @@ void write_verdicts(const fs::path& path, const std::string& head,
                     const std::map<std::string, bool>& verdicts) {
   std::error_code error;
   fs::create_directories(path.parent_path(), error);
-  const fs::path partial = path.string() + '.' + std::to_string(getpid());
+  static std::atomic<std::uint64_t> writes = 0;  // several contexts of a process may write at once
+  const fs::path partial = path.string() + '.' + std::to_string(getpid()) + '.' + std::to_string(++writes);
   std::ofstream file(partial, std::ios::binary | std::ios::trunc);
   file << head << '\n';
   for (const auto& [use, lookback] : verdicts) file << use << ' ' << lookback << '\n';
@@ -80,6 +68,19 @@ void write_verdicts(const fs::path& path, const std::string& head,
 }
 
 }  // namespace
+
+std::string line_of(const DeviceUse& use) {
+  std::ostringstream text;
+  const BuildOptions& build = use.build;
+  text << "build:" << use.builds << ':' << static_cast<int>(build.builder) << ':' << build.radius << ':'
+       << build.morton_bits << ':' << build.lookback_turns << ':' << build.lookback_max_fallbacks << ':'
+       << build.lookback_stress << ':' << to_string(build.variants);
+  for (const TraceOptions& trace : use.traces) {
+    text << ";trace:" << name_of(trace.walk) << ':' << trace.max_turns << ':' << trace.visits_per_turn << ':'
+         << trace.stack_entries << ':' << trace.triangle_test << ':' << trace.box_test;
+  }
+  return text.str();
+}
 
 bool kept_check_device(Device& device, const DeviceUse& use) {
   const fs::path path = device.kept_file("verdicts");

@@ -9,4 +9,7 @@ namespace coppice {
 // anew. Refusals are never kept.
 bool kept_check_device(Device& device, const DeviceUse& use);
 
+// All that decides what a check does, in one line.
+std::string line_of(const DeviceUse& use);
+
 }  // namespace coppice

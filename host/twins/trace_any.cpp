@@ -62,10 +62,10 @@ class AnyWalk {
 
 void trace_any(const TraceAnyArgs& args) {
   TraceCounters& counters = args.counters[0];
-  const bool empty = args.state[0].active_count == 0;
+  bool empty = args.state[0].active_count == 0;
   if (!empty && args.nodes[0].height > args.stack_entries) {
     args.state[0].error_word |= ERROR_TREE_TOO_DEEP;
-    return;
+    empty = true;
   }
   const uint ray_count = counted(args.count_at, args.ray_count);
   for (uint i = 0; i < ray_count; ++i) {

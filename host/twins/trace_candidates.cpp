@@ -42,10 +42,10 @@ bool is_before(const BoxCandidate& a, const BoxCandidate& b) {
 
 void trace_candidates(const TraceCandidatesArgs& args) {
   TraceCounters& counters = args.counters[0];
-  const bool empty = args.state[0].active_count == 0;
+  bool empty = args.state[0].active_count == 0;
   if (!empty && args.nodes[0].height > args.stack_entries) {
     args.state[0].error_word |= ERROR_TREE_TOO_DEEP;
-    return;
+    empty = true;
   }
   const uint ray_count = counted(args.count_at, args.ray_count);
   for (uint i = 0; i < ray_count; ++i) {

@@ -2,11 +2,16 @@
 //
 // Ordering. A cmd_ call begins with a memory barrier from compute shaders and transfers (their writes) to
 // compute shaders, transfers and indirect commands, so calls may follow each other, share their scratch, and
-// read what a compute shader or a transfer wrote before. Inputs that come from elsewhere (the host after the
-// submit, a graphics stage) need a barrier of the caller's to compute-shader reads. No barrier ends a call:
-// before anything but another cmd_ call reads or overwrites what it touched, the caller puts one whose first
-// scope is VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT with
-// VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT.
+// read what a compute shader or a transfer wrote before. All other stages are the caller's: where the host, a
+// graphics stage or an indirect command has written an input, or has read or written what a call overwrites
+// (a tree that a fragment shader walked in the frame before, say), the caller puts a barrier from there to
+// COMPUTE_SHADER | ALL_TRANSFER. No barrier ends a call: before anything but another cmd_ call reads or
+// overwrites what it touched, the caller puts one whose first scope is VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT
+// | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT with VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT |
+// VK_ACCESS_2_TRANSFER_WRITE_BIT.
+//
+// Lifetimes. A builder, sorter, scanner or tracer may be destroyed when the last call is recorded; the
+// context must outlive every command buffer with calls in it, as it has their pipelines.
 //
 // Nothing is allocated while recording, nothing is submitted, and no state but the bound compute pipeline and
 // push constants of the command buffer changes.
@@ -88,8 +93,9 @@ class COPPICE_API Builder {
   TreeAddresses triangle_tree(const MemoryRange& tree) const;
   TreeAddresses box_tree(const MemoryRange& tree) const;
 
+  struct Plan;  // the library's own
+
  private:
-  struct Plan;
   std::unique_ptr<Plan> plan_;
 };
 
@@ -133,10 +139,8 @@ class COPPICE_API BatchBuilder {
   std::unique_ptr<Plan> plan_;
 };
 
-// What a Builder of these says.
-inline BuildSizes build_sizes(const Context& context, std::uint32_t max_primitives,
-                              const TreeOptions& options = {}) {
-  return Builder(context, max_primitives, options).sizes();
-}
+// At least what a Builder of these says; compiles and checks nothing. Throws ArgumentError as a Builder.
+COPPICE_API BuildSizes build_sizes(const Context& context, std::uint32_t max_primitives,
+                                   const TreeOptions& options = {});
 
 }  // namespace coppice

@@ -133,8 +133,8 @@ struct MemoryRange {
 };
 
 // A number that is known when the device gets there: a word, of which at most `maximum` count. With a null
-// address it is `maximum`. A larger word counts as `maximum` and sets COPPICE_ERROR_COUNT where there is a
-// flag word.
+// address it is `maximum`. A larger word counts as none in builds, as `maximum` elsewhere; builds, sorts and
+// scans set COPPICE_ERROR_COUNT then.
 struct ElementCount {
   std::uint32_t maximum = 0;
   VkDeviceAddress address = 0;  // a multiple of 4

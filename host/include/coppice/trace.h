@@ -13,9 +13,13 @@ enum class TraceTree {
   wide_single,
 };
 
+// Of a call: what one dispatch takes on every device.
+inline constexpr std::uint32_t MAX_RAYS = 65535 * 64;
+
 struct RayInput {
   VkDeviceAddress rays = 0;  // CoppiceRay; a multiple of 16
-  ElementCount count{};
+  ElementCount
+      count{};  // at most MAX_RAYS; a larger word on the device counts as the maximum, without an error
   // A ray sees a primitive where their masks have a bit in common.
   std::uint32_t ray_mask = 0xff;  // of all rays
   VkDeviceAddress ray_masks = 0;  // a word a ray, combined with ray_mask by and; a multiple of 4; null: none

@@ -84,7 +84,8 @@ typedef struct CoppiceTreeState {
   uint32_t active_count; /* primitives in the tree: all finite ones; 0: no tree */
   uint32_t bounds_more[3];
   uint32_t round_count; /* PLOC rounds it took */
-  uint32_t error_word;  /* the flag word: bits below; 0: well. With any of them there is no tree */
+  uint32_t error_word; /* the flag word: bits below; 0: well. After a build with any of them there is no tree,
+                          after WIDE_TOO_DEEP no wide one; traces add theirs */
   uint32_t
       primitive_count; /* that the build was asked for, larger than its maximum with COPPICE_ERROR_COUNT */
   uint32_t reserved[2];
