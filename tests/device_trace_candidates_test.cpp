@@ -189,7 +189,7 @@ TEST_F(TraceCandidates, KeepToMasksAndToACountOnTheDevice) {
   }
 }
 
-TEST_F(TraceCandidates, ATreeDeeperThanTheStackIsRefused) {
+TEST_F(TraceCandidates, ATreeDeeperThanTheStackIsRefusedAndNothingIsMet) {
   const std::vector<Triangle> triangles = random_triangles(1000, 3, 0.5f);
   const Bvh bvh = build_ploc(triangles, {});
   const std::vector<Ray> rays = hard_rays(RayKind::RANDOM, triangles, {}, 100, 4);
@@ -200,7 +200,7 @@ TEST_F(TraceCandidates, ATreeDeeperThanTheStackIsRefused) {
   --options.stack_entries;
   const TracedCandidates refused = candidates_in_lockstep(input, 4, options);
   EXPECT_EQ(refused.error_word, ERROR_TREE_TOO_DEEP);
-  EXPECT_EQ(refused.counts, std::vector<uint>(100, UNTOUCHED));
+  EXPECT_EQ(refused.counts, std::vector<uint>(100, 0));
 }
 
 TEST_F(TraceCandidates, TooFewTurnsAreReportedByName) {
