@@ -61,11 +61,15 @@ vk::raii::Pipeline make_pipeline(const VulkanContext& context, const Kernel& ker
                             context.allocator);
 }
 
-vk::Pipeline pipeline_for(VulkanContext& context, const Kernel& kernel) {
+PipelineKey key_of(const Kernel& kernel) {
   PipelineKey key{kernel.spirv.data(), {}, kernel.specialization.size()};
   if (kernel.specialization.size() > key.constants.size())
     throw std::logic_error("kernel with too many constants");
   std::ranges::copy(kernel.specialization, key.constants.begin());
+  return key;
+}
+
+vk::Pipeline pipeline_for(VulkanContext& context, const Kernel& kernel, const PipelineKey& key) {
   const auto find = [&]() -> vk::Pipeline {
     const std::shared_lock lock(context.pipeline_mutex);
     const auto found = context.pipelines.find(key);
@@ -81,7 +85,7 @@ vk::Pipeline pipeline_for(VulkanContext& context, const Kernel& kernel) {
 
 }  // namespace
 
-void prepare(Device& device, const Kernel& kernel) { pipeline_for(device.context(), kernel); }
+void prepare(Device& device, const Kernel& kernel) { pipeline_for(device.context(), kernel, key_of(kernel)); }
 
 // All earlier steps before all later ones: kernels, clears and the words of indirect dispatches.
 void CommandWriter::barrier() {
@@ -110,7 +114,10 @@ void CommandWriter::step(const char* name, bool clears, Record record) {
 void CommandWriter::bind(const Kernel& kernel, std::span<const std::byte> push_constants) {
   const auto& functions = *context_.device.getDispatcher();
   const vk::CommandBuffer commands(commands_);
-  commands.bindPipeline(vk::PipelineBindPoint::eCompute, pipeline_for(context_, kernel), functions);
+  if (const PipelineKey key = key_of(kernel); key != bound_) {
+    commands.bindPipeline(vk::PipelineBindPoint::eCompute, pipeline_for(context_, kernel, key), functions);
+    bound_ = key;
+  }
   commands.pushConstants(*context_.pipeline_layout, vk::ShaderStageFlagBits::eCompute, 0,
                          static_cast<std::uint32_t>(push_constants.size()), push_constants.data(), functions);
 }

@@ -3,6 +3,7 @@
 #include <vulkan/vulkan_core.h>
 
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -15,6 +16,14 @@ struct Kernel {
   const char* name;
   std::span<const std::uint32_t> spirv;
   std::span<const std::uint32_t> specialization;  // constants 0, 1, ...
+};
+
+// What tells pipelines apart.
+struct PipelineKey {
+  const std::uint32_t* kernel = nullptr;
+  std::array<std::uint32_t, 8> constants{};
+  std::size_t constant_count = 0;
+  auto operator<=>(const PipelineKey&) const = default;
 };
 
 // Compiles the kernel's pipeline, if it is not yet there.
@@ -53,6 +62,7 @@ class CommandWriter {
   VkCommandBuffer commands_;
   std::span<const BlockMemory> blocks_;
   bool after_clear_ = false;
+  PipelineKey bound_;  // of no kernel at first
 };
 
 }  // namespace coppice

@@ -16,18 +16,12 @@
 #include <vector>
 #include <vulkan/vulkan_raii.hpp>
 
+#include "gpu/command_writer.h"
 #include "gpu/device.h"
 
 namespace coppice {
 
 namespace vk = coppice_vk;
-
-struct PipelineKey {
-  const std::uint32_t* kernel = nullptr;
-  std::array<std::uint32_t, 8> constants{};
-  std::size_t constant_count = 0;
-  auto operator<=>(const PipelineKey&) const = default;
-};
 
 // The system's vkGetInstanceProcAddr; throws DeviceError where there is no loader.
 PFN_vkGetInstanceProcAddr loader_entry();

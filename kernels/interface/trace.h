@@ -148,7 +148,7 @@ struct TraceWideArgs {
 // Any hit: for each ray whether it hits some opaque primitive that it sees, with t in [t_min, t_max]. A
 // primitive that is not opaque ends no ray, as if it were not there: who has alpha masks takes closest hits.
 // With the watertight and the robust test the answer does not depend on the order of visits; it is then,
-// without flags and masks, whether the closest hit is one.
+// without flags and masks, whether the closest hit is one. A tree higher than the stack hits nothing.
 struct TraceAnyArgs {
   NodeBuffer nodes;
   TriangleBuffer triangles;
