@@ -1,6 +1,7 @@
 #pragma once
 
 #include "coppice/build.h"
+#include "pipeline/build_plan.h"
 #include "pipeline/primitives.h"
 
 namespace coppice {
