@@ -1,6 +1,7 @@
 // A plan made for many primitives is that for any number of fewer, in the same slots.
 #include <gtest/gtest.h>
 
+#include "interface/sort.h"
 #include "pipeline/build_plan.h"
 #include "pipeline/wide_plan.h"
 

@@ -14,6 +14,8 @@ template <class... Functions>
 struct Cases : Functions... {
   using Functions::operator()...;
 };
+template <class... Functions>
+Cases(Functions...) -> Cases<Functions...>;  // clang 14 does not find it by itself
 
 const Cell& cell_at(const Row& row, std::size_t column) {
   static const Cell none;
