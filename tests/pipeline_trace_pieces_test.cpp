@@ -150,7 +150,8 @@ TEST(TracePieces, StepsOfAPieceFollowFromItsWorkAlone) {
   const TracePlan plan = plan_trace(layout, tree, 1, options);
   TracePieces pieces(tree, plan);
   for (int i = 0; i < 100; ++i) {
-    Chain chain(std::vector<std::uint64_t>(layout.block_bytes().size(), 0));
+    const std::vector<std::uint64_t> addresses(layout.block_bytes().size(), 0);
+    Chain chain(addresses);
     pieces.append(chain, 1 << 20);
     EXPECT_LE(chain.steps().size(), 10u);
   }
