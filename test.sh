@@ -16,8 +16,10 @@ test_timeout=300 # seconds a test, where CMake sets no other
 reference_only='AMillion|EveryStageOfEveryTree|WideTree.PowersOfTwo|WideTree.SizesUpTo300|BenchChecksAndTimes'
 reference_only+='|TuneKeeps|TuneWithout|NamesMayHoldAnything|AFullDisk|IsNotWaitedFor|OptionsDoWhatTheySay'
 reference_only+='|OutputsThatCome|SeedsInARow|lookback_on_4_threads|AboutSixtyFourTilesOfASort|LikeAGpu'
-# Of the trees that are traced, left are one without split triangles and one with, and the device's.
+# Of the trees that are traced, left are one without split triangles and one with, and the device's; in the other scene,
+# and beside brute force, one tree.
 reference_only+='|DeviceTraceOf.*/(bottom_up|gd16|gd16_early|hploc|lbvh|ploc_parallel|sah|sah_sweep|top_down)( |$)'
+reference_only+='|DeviceTraceOf(\.Scatter|Tree).*/(gpu_hploc|gpu_lbvh|ploc|sbvh)( |$)'
 
 # timed NAME COMMAND...: notes how long it took.
 parts=()
