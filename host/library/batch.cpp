@@ -12,10 +12,6 @@ struct BatchBuilder::Plan {
   struct Primitives {
     Layout layout = Layout::apart(~std::uint64_t{0});
     BatchPlan batch;
-
-    std::uint64_t bytes(Memory memory) const {
-      return layout.block_bytes()[static_cast<std::size_t>(memory)];
-    }
   };
 
   explicit Plan(Device& device) : device(device) {}
@@ -54,7 +50,7 @@ BatchBuilder::BatchBuilder(BatchBuilder&&) noexcept = default;
 
 BuildSizes BatchBuilder::sizes() const {
   const auto most = [&](Memory memory) {
-    return std::max(plan_->triangles.bytes(memory), plan_->boxes.bytes(memory));
+    return std::max(plan_->triangles.layout.bytes_of(memory), plan_->boxes.layout.bytes_of(memory));
   };
   return {most(Memory::tree), most(Memory::scratch), 0};
 }
@@ -67,8 +63,8 @@ void BatchBuilder::Plan::cmd_build(VkCommandBuffer commands, const Primitives& p
   check_count(primitive_count, plan.batch.primitives.count, "count");
   check_count(range_count, static_cast<std::uint32_t>(plan.batch.ranges.count), "range_count");
   CallMemory memory(device);
-  memory.set(Memory::tree, tree, plan.bytes(Memory::tree), "tree");
-  memory.set(Memory::scratch, scratch, plan.bytes(Memory::scratch), "scratch");
+  memory.set(Memory::tree, tree, plan.layout.bytes_of(Memory::tree), "tree");
+  memory.set(Memory::scratch, scratch, plan.layout.bytes_of(Memory::scratch), "scratch");
   memory.set(Memory::source, ranges, range_count.maximum, 8, "ranges");
   CommandSink sink(device, commands, memory, queries);
   Chain chain(memory.addresses(), &sink);
@@ -79,7 +75,7 @@ void BatchBuilder::Plan::cmd_build(VkCommandBuffer commands, const Primitives& p
 }
 
 BatchAddresses BatchBuilder::Plan::addresses(const Primitives& plan, const MemoryRange& tree) const {
-  const VkDeviceAddress base = checked_address(device, tree, plan.bytes(Memory::tree), "tree");
+  const VkDeviceAddress base = checked_address(device, tree, plan.layout.bytes_of(Memory::tree), "tree");
   const auto at = [&](const auto& slot) { return slot.count > 0 ? base + slot.place.offset : 0; };
   const BatchPlan& slots = plan.batch;
   return {at(slots.nodes), at(slots.trees), at(slots.primitives.triangles), at(slots.state),

@@ -16,10 +16,6 @@ struct Builder::Plan {
     Layout layout = Layout::apart(~std::uint64_t{0});
     BuildPlan build;
     std::optional<WidePlan> wide;
-
-    std::uint64_t bytes(Memory memory) const {
-      return layout.block_bytes()[static_cast<std::size_t>(memory)];
-    }
   };
 
   // Even of no primitives a tree has a place, which rays find empty.
@@ -33,7 +29,9 @@ struct Builder::Plan {
   }
 
   BuildSizes sizes() const {
-    const auto most = [&](Memory memory) { return std::max(triangles.bytes(memory), boxes.bytes(memory)); };
+    const auto most = [&](Memory memory) {
+      return std::max(triangles.layout.bytes_of(memory), boxes.layout.bytes_of(memory));
+    };
     return {most(Memory::tree), most(Memory::scratch), 0};
   }
 
@@ -83,7 +81,7 @@ BuildSizes build_sizes(const Context& context, std::uint32_t max_primitives, con
 }
 
 TreeAddresses Builder::Plan::addresses(const Primitives& plan, const MemoryRange& tree) const {
-  const VkDeviceAddress base = checked_address(device, tree, plan.bytes(Memory::tree), "tree");
+  const VkDeviceAddress base = checked_address(device, tree, plan.layout.bytes_of(Memory::tree), "tree");
   const auto at = [&](const auto& slot) { return slot.count > 0 ? base + slot.place.offset : 0; };
   const TreeSlots& slots = plan.build;
   return {at(slots.nodes), at(slots.state), at(slots.triangles), at(slots.wide_nodes), at(slots.wide_counts)};
@@ -94,8 +92,8 @@ void Builder::Plan::cmd_build(VkCommandBuffer commands, const Primitives& plan, 
                               KernelQueries* queries) const {
   check_count(count, plan.build.triangle_count, "count");
   CallMemory memory(device);
-  memory.set(Memory::tree, tree, plan.bytes(Memory::tree), "tree");
-  memory.set(Memory::scratch, scratch, plan.bytes(Memory::scratch), "scratch");
+  memory.set(Memory::tree, tree, plan.layout.bytes_of(Memory::tree), "tree");
+  memory.set(Memory::scratch, scratch, plan.layout.bytes_of(Memory::scratch), "scratch");
   CommandSink sink(device, commands, memory, queries);
   Chain chain(memory.addresses(), &sink);
   const BuildPlan build = with_count(plan.build, count.maximum);

@@ -1,4 +1,5 @@
 #include "library/state.h"
+#include "stages/record_step.h"
 
 namespace coppice {
 
@@ -64,27 +65,18 @@ void CommandSink::stamp(const char* name) {
 }
 
 void CommandSink::take(const Step& step) {
-  if (const Clear* const clear = std::get_if<Clear>(&step)) {
-    writer_.clear(clear->place.block, clear->place.offset, clear->bytes);
+  const StageDeclaration* const stage = stage_of(step);
+  if (stage && open_) stamp(open_);
+  record_step(writer_, step);
+  if (stage) {
+    stamp(stage->name);
+  } else if (std::holds_alternative<Clear>(step)) {
     open_ = "clear";
-    return;
   }
-  const Dispatch* const dispatch = dispatch_of(step);
-  if (!dispatch) return;
-  if (open_) stamp(open_);
-  const Kernel kernel{dispatch->stage->name, dispatch->stage->kernel, dispatch->constants.span()};
-  const auto args = std::span(dispatch->args).first(dispatch->args_bytes);
-  if (dispatch->indirect) {
-    writer_.dispatch_indirect(kernel, args, dispatch->indirect->block, dispatch->indirect->offset);
-  } else {
-    writer_.dispatch(kernel, args, {dispatch->groups.x, dispatch->groups.y, dispatch->groups.z});
-  }
-  stamp(dispatch->stage->name);
 }
 
 void PrepareSink::take(const Step& step) {
-  if (const Dispatch* const dispatch = dispatch_of(step))
-    prepare(device_, {dispatch->stage->name, dispatch->stage->kernel, dispatch->constants.span()});
+  if (const Dispatch* const dispatch = dispatch_of(step)) prepare(device_, kernel_of(*dispatch));
 }
 
 }  // namespace coppice

@@ -22,9 +22,7 @@ Scanner::Scanner(const Context& context, std::uint32_t max_words) {
 Scanner::~Scanner() = default;
 Scanner::Scanner(Scanner&&) noexcept = default;
 
-VkDeviceSize Scanner::scratch_bytes() const {
-  return plan_->layout.block_bytes()[static_cast<std::size_t>(Memory::scratch)];
-}
+VkDeviceSize Scanner::scratch_bytes() const { return plan_->layout.bytes_of(Memory::scratch); }
 
 VkDeviceAddress Scanner::state_address(const MemoryRange& scratch) const {
   return checked_address(plan_->device, scratch, scratch_bytes(), "scratch") + plan_->scan.state.place.offset;

@@ -21,10 +21,6 @@ BuildOptions in_place(BuildOptions options) {
   return options;
 }
 
-std::uint64_t bytes_of(const Layout& layout, Memory memory) {
-  return layout.block_bytes()[static_cast<std::size_t>(memory)];
-}
-
 }  // namespace
 
 Sorter::Sorter(const Context& context, std::uint32_t max_keys, const SortOptions& options) {
@@ -48,7 +44,7 @@ Sorter::Sorter(const Context& context, std::uint32_t max_keys, const SortOptions
 Sorter::~Sorter() = default;
 Sorter::Sorter(Sorter&&) noexcept = default;
 
-VkDeviceSize Sorter::scratch_bytes() const { return bytes_of(plan_->layout, Memory::scratch); }
+VkDeviceSize Sorter::scratch_bytes() const { return plan_->layout.bytes_of(Memory::scratch); }
 
 VkDeviceAddress Sorter::state_address(const MemoryRange& scratch) const {
   return checked_address(plan_->device, scratch, scratch_bytes(), "scratch") + plan_->sort.state.place.offset;

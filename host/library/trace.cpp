@@ -66,9 +66,7 @@ struct Tracer::Plan {
   Plan(Device& device, TraceTree tree)
       : device(device), tree(tree), counters(layout.add<TraceCounters>("counters", 1)) {}
 
-  std::uint64_t scratch_bytes() const {
-    return layout.block_bytes()[static_cast<std::size_t>(Memory::scratch)];
-  }
+  std::uint64_t scratch_bytes() const { return layout.bytes_of(Memory::scratch); }
 
   // Throws ArgumentError where the tree does not have what is to be walked.
   TraceOptions with_walk_of(const TreeAddresses& addresses) const {

@@ -71,6 +71,9 @@ class Layout {
     return {reserve({name, {}, count, sizeof(T)}, memory), count};
   }
 
+  // Of a layout whose kinds of memory lie apart.
+  std::uint64_t bytes_of(Memory memory) const { return block_bytes_.at(static_cast<std::size_t>(memory)); }
+
   const std::vector<std::uint64_t>& block_bytes() const { return block_bytes_; }
   const std::vector<SlotListing>& slots() const { return slots_; }
 
