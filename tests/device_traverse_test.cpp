@@ -47,7 +47,8 @@ struct ConsumerFound {
 
 ConsumerFound trace_by_consumer(const RaysToTrace& input) {
   static const std::vector<std::uint32_t> shader = read_shader("rays");
-  const Stage<ConsumerRaysArgs, NoConstants> stage{{"consumer_rays", shader, nullptr, nullptr, {}}};
+  const Stage<ConsumerRaysArgs, NoConstants> stage{
+      {"consumer_rays", shader, nullptr, nullptr, {}, address_args_of<ConsumerRaysArgs>}};
   const auto ray_count = static_cast<std::uint32_t>(input.rays.size());
   Layout layout(test_device().properties().max_block_bytes);
   TreeSlots tree = plan_tree(layout, static_cast<std::uint32_t>(input.triangles.size()), input.nodes.size());

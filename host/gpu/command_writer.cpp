@@ -87,7 +87,7 @@ vk::Pipeline pipeline_for(VulkanContext& context, const Kernel& kernel, const Pi
 
 void prepare(Device& device, const Kernel& kernel) { pipeline_for(device.context(), kernel, key_of(kernel)); }
 
-// All earlier steps before all later ones: kernels, clears and the words of indirect dispatches.
+// Of kernels, clears and the words of indirect dispatches.
 void CommandWriter::barrier() {
   using Stage = vk::PipelineStageFlagBits2;
   using Access = vk::AccessFlagBits2;
@@ -101,12 +101,10 @@ void CommandWriter::barrier() {
 }
 
 template <class Record>
-void CommandWriter::step(const char* name, bool clears, Record record) {
+void CommandWriter::step(const char* name, Record record) {
   const auto& functions = *context_.device.getDispatcher();
   const vk::CommandBuffer commands(commands_);
   if (context_.labels) commands.beginDebugUtilsLabelEXT(vk::DebugUtilsLabelEXT(name), functions);
-  if (!(clears && after_clear_)) barrier();
-  after_clear_ = clears;
   record(commands, functions);
   if (context_.labels) commands.endDebugUtilsLabelEXT(functions);
 }
@@ -124,7 +122,7 @@ void CommandWriter::bind(const Kernel& kernel, std::span<const std::byte> push_c
 
 void CommandWriter::dispatch(const Kernel& kernel, std::span<const std::byte> push_constants,
                              std::array<std::uint32_t, 3> groups) {
-  step(kernel.name, false, [&](vk::CommandBuffer commands, const auto& functions) {
+  step(kernel.name, [&](vk::CommandBuffer commands, const auto& functions) {
     bind(kernel, push_constants);
     commands.dispatch(groups[0], groups[1], groups[2], functions);
   });
@@ -132,14 +130,14 @@ void CommandWriter::dispatch(const Kernel& kernel, std::span<const std::byte> pu
 
 void CommandWriter::dispatch_indirect(const Kernel& kernel, std::span<const std::byte> push_constants,
                                       std::uint32_t block, std::uint64_t offset) {
-  step(kernel.name, false, [&](vk::CommandBuffer commands, const auto& functions) {
+  step(kernel.name, [&](vk::CommandBuffer commands, const auto& functions) {
     bind(kernel, push_constants);
     commands.dispatchIndirect(blocks_[block].buffer, blocks_[block].offset + offset, functions);
   });
 }
 
 void CommandWriter::clear(std::uint32_t block, std::uint64_t offset, std::uint64_t bytes) {
-  step("clear", true, [&](vk::CommandBuffer commands, const auto& functions) {
+  step("clear", [&](vk::CommandBuffer commands, const auto& functions) {
     commands.fillBuffer(blocks_[block].buffer, blocks_[block].offset + offset, bytes, 0, functions);
   });
 }

@@ -35,8 +35,7 @@ struct BlockMemory {
   VkDeviceSize offset;
 };
 
-// Records steps into a command buffer, whoever owns that. A barrier precedes every step but a clear that
-// follows another one. Allocates nothing for kernels that are prepared.
+// Records steps into a command buffer, whoever owns that. Allocates nothing for kernels that are prepared.
 class CommandWriter {
  public:
   // The blocks must outlive it.
@@ -48,20 +47,20 @@ class CommandWriter {
   void dispatch_indirect(const Kernel& kernel, std::span<const std::byte> push_constants, std::uint32_t block,
                          std::uint64_t offset);
   void clear(std::uint32_t block, std::uint64_t offset, std::uint64_t bytes);
+  // What comes before it in the queue is done, and seen, when what comes behind it begins.
+  void barrier();
 
   // Writes the time when all that was recorded so far is done.
   void stamp(VkQueryPool pool, std::uint32_t query);
 
  private:
-  void barrier();
   template <class Record>
-  void step(const char* name, bool clears, Record record);
+  void step(const char* name, Record record);
   void bind(const Kernel& kernel, std::span<const std::byte> push_constants);
 
   VulkanContext& context_;
   VkCommandBuffer commands_;
   std::span<const BlockMemory> blocks_;
-  bool after_clear_ = false;
   PipelineKey bound_;  // of no kernel at first
 };
 

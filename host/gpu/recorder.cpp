@@ -42,6 +42,11 @@ struct Recorder::Commands {
     return query_count++;
   }
 
+  void barrier() {
+    if (ended) throw std::logic_error("recorder: already submitted");
+    with_device_errors(context, [&] { writer.barrier(); });
+  }
+
   template <class Record>
   void step(Record record) {
     if (ended) throw std::logic_error("recorder: already submitted");
@@ -100,6 +105,8 @@ void Recorder::dispatch_indirect(const Kernel& kernel, std::span<const std::byte
 void Recorder::clear(std::uint32_t block, std::uint64_t offset, std::uint64_t bytes) {
   commands_->step([&] { commands_->writer.clear(block, offset, bytes); });
 }
+
+void Recorder::barrier() { commands_->barrier(); }
 
 void Recorder::mark() { commands_->mark_queries.push_back(commands_->stamp()); }
 

@@ -12,8 +12,7 @@ namespace coppice {
 
 enum class Timestamps { total, every_step };
 
-// Records steps into one command buffer of its own that can be submitted again and again; they are ordered as
-// those of a CommandWriter.
+// Records steps into one command buffer of its own that can be submitted again and again.
 class Recorder {
  public:
   // `step_limit`: at most so many steps and marks will be recorded.
@@ -26,6 +25,8 @@ class Recorder {
   void dispatch_indirect(const Kernel& kernel, std::span<const std::byte> push_constants, std::uint32_t block,
                          std::uint64_t offset);
   void clear(std::uint32_t block, std::uint64_t offset, std::uint64_t bytes);
+  // As that of a CommandWriter.
+  void barrier();
   // Notes the time between two steps, to split the total.
   void mark();
 

@@ -66,7 +66,7 @@ void BatchBuilder::Plan::cmd_build(VkCommandBuffer commands, const Primitives& p
   memory.set(Memory::tree, tree, plan.layout.bytes_of(Memory::tree), "tree");
   memory.set(Memory::scratch, scratch, plan.layout.bytes_of(Memory::scratch), "scratch");
   memory.set(Memory::source, ranges, range_count.maximum, 8, "ranges");
-  CommandSink sink(device, commands, memory, queries);
+  CommandSink sink(device, commands, plan.layout, memory, queries);
   Chain chain(memory.addresses(), &sink);
   BatchPlan batch = plan.batch;
   batch.primitives.count = primitive_count.maximum;

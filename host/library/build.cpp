@@ -94,7 +94,7 @@ void Builder::Plan::cmd_build(VkCommandBuffer commands, const Primitives& plan, 
   CallMemory memory(device);
   memory.set(Memory::tree, tree, plan.layout.bytes_of(Memory::tree), "tree");
   memory.set(Memory::scratch, scratch, plan.layout.bytes_of(Memory::scratch), "scratch");
-  CommandSink sink(device, commands, memory, queries);
+  CommandSink sink(device, commands, plan.layout, memory, queries);
   Chain chain(memory.addresses(), &sink);
   const BuildPlan build = with_count(plan.build, count.maximum);
   append_build(chain, build, input);

@@ -45,9 +45,12 @@ void CallMemory::set(Memory memory, VkDeviceAddress address, std::uint64_t bytes
   addresses_[static_cast<std::size_t>(memory)] = address;
 }
 
-CommandSink::CommandSink(Device& device, VkCommandBuffer commands, const CallMemory& memory,
-                         KernelQueries* queries)
-    : writer_(device, commands, memory.blocks()), queries_(queries) {
+CommandSink::CommandSink(Device& device, VkCommandBuffer commands, const Layout& layout,
+                         const CallMemory& memory, KernelQueries* queries)
+    : writer_(device, commands, memory.blocks()),
+      hazards_(AddressMap(layout, memory.addresses()),
+               queries ? Hazards::Overlap::clears : Hazards::Overlap::steps),
+      queries_(queries) {
   if (queries_) queries_->written = 0;
   stamp("begin");
 }
@@ -67,7 +70,7 @@ void CommandSink::stamp(const char* name) {
 void CommandSink::take(const Step& step) {
   const StageDeclaration* const stage = stage_of(step);
   if (stage && open_) stamp(open_);
-  record_step(writer_, step);
+  record_step(writer_, step, hazards_);
   if (stage) {
     stamp(stage->name);
   } else if (std::holds_alternative<Clear>(step)) {

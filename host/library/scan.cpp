@@ -35,7 +35,7 @@ void Scanner::cmd_scan(VkCommandBuffer commands, VkDeviceAddress source, VkDevic
   memory.set(Memory::scratch, scratch, scratch_bytes(), "scratch");
   memory.set(Memory::source, source, std::uint64_t{count.maximum} * 4, 16, "source");
   memory.set(Memory::target, target, std::uint64_t{count.maximum} * 4, 16, "target");
-  CommandSink sink(plan_->device, commands, memory, queries);
+  CommandSink sink(plan_->device, commands, plan_->layout, memory, queries);
   Chain chain(memory.addresses(), &sink);
   ScanPlan plan = plan_->scan;
   plan.word_count = count.maximum;

@@ -57,7 +57,7 @@ void Sorter::cmd_sort(VkCommandBuffer commands, VkDeviceAddress keys, VkDeviceAd
   memory.set(Memory::scratch, scratch, scratch_bytes(), "scratch");
   memory.set(Memory::keys, keys, plan_->sort.keys[0].bytes(), 16, "keys");
   memory.set(Memory::values, values, plan_->sort.values[0].bytes(), 16, "values");
-  CommandSink sink(plan_->device, commands, memory, queries);
+  CommandSink sink(plan_->device, commands, plan_->layout, memory, queries);
   Chain chain(memory.addresses(), &sink);
   const BuildPlan plan = with_count(plan_->sort, count.maximum);
   chain.clear(plan.state);

@@ -7,7 +7,7 @@
 #include "coppice/build.h"
 #include "gpu/command_writer.h"
 #include "pipeline/checked_device.h"
-#include "stages/chain.h"
+#include "stages/hazards.h"
 
 namespace coppice {
 
@@ -75,10 +75,12 @@ void check_count(const ElementCount& count, std::uint32_t maximum, const char* w
 // Throws ArgumentError unless `address` is a multiple of `alignment` and, where it must be, not null.
 void check_address(VkDeviceAddress address, std::uint64_t alignment, bool may_be_null, const char* what);
 
-// Records the steps of a chain as they come, with the times of all, if asked.
+// Records the steps of a chain as they come, with the times of all, if asked: then they stand apart.
 class CommandSink : public StepSink {
  public:
-  CommandSink(Device& device, VkCommandBuffer commands, const CallMemory& memory, KernelQueries* queries);
+  // The layout is that of the memory's kinds; both must outlive it.
+  CommandSink(Device& device, VkCommandBuffer commands, const Layout& layout, const CallMemory& memory,
+              KernelQueries* queries);
   ~CommandSink();
   void take(const Step& step) override;
 
@@ -86,6 +88,7 @@ class CommandSink : public StepSink {
   void stamp(const char* name);
 
   CommandWriter writer_;
+  Hazards hazards_;
   KernelQueries* queries_;
   const char* open_ = nullptr;  // what has been recorded since the last timestamp: clears
 };

@@ -96,7 +96,7 @@ struct Tracer::Plan {
   void record(VkCommandBuffer commands, TraceCall& call, const MemoryRange& scratch, KernelQueries* queries,
               Append append) const {
     call.memory.set(Memory::scratch, scratch, scratch_bytes(), "scratch");
-    CommandSink sink(device, commands, call.memory, queries);
+    CommandSink sink(device, commands, layout, call.memory, queries);
     Chain chain(call.memory.addresses(), &sink);
     chain.clear(counters);
     append(chain);

@@ -14,6 +14,7 @@ class CpuExecutor {
   explicit CpuExecutor(const Layout& layout);
 
   Chain chain() const { return Chain(addresses_); }
+  std::span<const std::uint64_t> block_addresses() const { return addresses_; }
 
   // A mark, or an indirect dispatch whose number of workgroups is now 0.
   bool does_nothing(const Step& step) const;

@@ -13,10 +13,12 @@ namespace coppice {
 class GpuExecutor {
  public:
   // Allocates the layout's blocks. Throws DeviceError when they do not fit.
-  GpuExecutor(Device& device, const Layout& layout) : device_(device), arena_(device, layout.block_bytes()) {}
+  GpuExecutor(Device& device, const Layout& layout)
+      : device_(device), layout_(layout), arena_(device, layout.block_bytes()) {}
 
   Chain chain() const { return Chain(arena_.block_addresses()); }
 
+  // Steps that do not depend on each other overlap, unless every step is timed.
   Recorder record(std::span<const Step> steps, Timestamps timestamps = Timestamps::total);
 
   // Throws LayoutError for more values than the slot holds.
@@ -37,6 +39,7 @@ class GpuExecutor {
 
  private:
   Device& device_;
+  Layout layout_;
   Arena arena_;
 };
 

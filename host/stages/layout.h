@@ -62,6 +62,7 @@ class Layout {
     Layout layout(max_block_bytes);
     layout.apart_ = true;
     layout.block_bytes_.resize(memory_kinds);
+    layout.slot_ends_.resize(memory_kinds);
     return layout;
   }
 
@@ -74,6 +75,9 @@ class Layout {
   // Of a layout whose kinds of memory lie apart.
   std::uint64_t bytes_of(Memory memory) const { return block_bytes_.at(static_cast<std::size_t>(memory)); }
 
+  // Offset in the block where the slot at this place, its guard too, has its end.
+  std::uint64_t end_of_slot(Place place) const;
+
   const std::vector<std::uint64_t>& block_bytes() const { return block_bytes_; }
   const std::vector<SlotListing>& slots() const { return slots_; }
 
@@ -83,6 +87,7 @@ class Layout {
   std::uint64_t max_block_bytes_;
   bool apart_ = false;
   std::vector<std::uint64_t> block_bytes_;
+  std::vector<std::vector<std::uint64_t>> slot_ends_;  // by block, ascending
   std::vector<SlotListing> slots_;
 };
 

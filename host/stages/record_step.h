@@ -1,7 +1,7 @@
 #pragma once
 
 #include "gpu/command_writer.h"
-#include "stages/chain.h"
+#include "stages/hazards.h"
 
 namespace coppice {
 
@@ -9,9 +9,11 @@ inline Kernel kernel_of(const Dispatch& dispatch) {
   return {dispatch.stage->name, dispatch.stage->kernel, dispatch.constants.span()};
 }
 
-// Of a Recorder or a CommandWriter. A mark, which is no command, records nothing.
+// To a Recorder or a CommandWriter, behind a barrier where there must be one. A mark, which is no command,
+// records nothing.
 template <class Target>
-void record_step(Target& target, const Step& step) {
+void record_step(Target& target, const Step& step, Hazards& hazards) {
+  if (hazards.needs_barrier(step)) target.barrier();
   if (const Clear* const clear = std::get_if<Clear>(&step)) {
     target.clear(clear->place.block, clear->place.offset, clear->bytes);
   } else if (const Dispatch* const dispatch = dispatch_of(step)) {

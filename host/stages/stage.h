@@ -6,6 +6,8 @@
 #include <span>
 #include <type_traits>
 
+#include "stages/address_args.h"
+
 namespace coppice {
 
 struct RunCounts;
@@ -29,6 +31,8 @@ struct StageDeclaration {
   std::uint64_t (*traffic)(const void* args, const RunCounts& counts);
   // Slots that it writes nearly alike; all others hold the same bits on every device.
   std::span<const NearlySlot> nearly;
+  // Where its Args have the memory that it reads and writes.
+  std::span<const AddressArg> addresses;
 };
 
 // The same, typed by its Args struct and by the struct of its kernel's specialization constants 0, 1, ...,

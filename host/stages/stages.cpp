@@ -10,7 +10,7 @@ namespace coppice {
        [](const void* args, const RunCounts& counts) {                                             \
          return traffic::stem(*static_cast<const Args*>(args), counts);                            \
        },                                                                                          \
-       nearly}};                                                                                   \
+       nearly, address_args_of<Args>}};                                                            \
   static_assert(sizeof(Args) <= 128 && sizeof(Args) % 8 == 0, "push constants of " #stem);
 COPPICE_STAGES(COPPICE_DEFINE_STAGE)
 #undef COPPICE_DEFINE_STAGE

@@ -14,7 +14,7 @@ Bytes tiles(Bytes count, Bytes tile) { return count == 0 ? 0 : divide_up(count, 
 constexpr Bytes digit_row = SORT_DIGITS * sizeof(uint);  // of Onesweep: a word for each digit
 
 // Of so many, as many as the device says, where it does.
-Bytes counted(UintBuffer count_at, Bytes most, const RunCounts& counts) {
+Bytes counted(Address<const uint> count_at, Bytes most, const RunCounts& counts) {
   return count_at.value ? std::min<Bytes>(most, counts.primitive_count) : most;
 }
 

@@ -26,7 +26,7 @@ Address<T> offset(Address<T> array, std::size_t by) {
 
 // As a build of these primitives alone, step by step.
 BatchTree build_range(const BatchBuildArgs& args, const BatchRange& range) {
-  const AabbBuffer boxes = offset(args.boxes, range.first);
+  const Address<const Aabb> boxes = offset(args.boxes, range.first);
   std::vector<BuildState> state(1);
   for (uint i = 0; i < range.count; ++i) {
     if (boxes[i].box_min.x <= boxes[i].box_max.x) add_box(state[0], boxes[i]);

@@ -5,7 +5,7 @@
 namespace coppice::twins {
 
 // Keeps how many primitives, keys or words were asked for.
-inline void note_count(BuildState& state, Address<uint> at, uint most) {
+inline void note_count(BuildState& state, Address<const uint> at, uint most) {
   state.primitive_count = at.value == 0 ? most : at[0];
   if (state.primitive_count > most) state.error_word |= ERROR_COUNT;
 }

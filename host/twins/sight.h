@@ -22,7 +22,7 @@ class Sight {
     return flags_.value == 0 ? PRIMITIVE_FLAGS_DEFAULT : flags_[primitive];
   }
 
-  Address<uint> flags_;
+  Address<const uint> flags_;
   uint mask_;
 };
 

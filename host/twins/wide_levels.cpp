@@ -13,11 +13,13 @@ uint divided_up(uint count, uint size) { return count / size + (count % size != 
 
 bool is_leaf(uint child) { return child >= WIDE_LEAF; }
 
-uint word_of(NodeBuffer nodes, uint index) { return nodes[index].height == 0 ? index + WIDE_LEAF : index; }
+uint word_of(Address<const Node> nodes, uint index) {
+  return nodes[index].height == 0 ? index + WIDE_LEAF : index;
+}
 
 }  // namespace
 
-std::array<uint, WIDE_CHILDREN> wide_children(NodeBuffer nodes, uint root) {
+std::array<uint, WIDE_CHILDREN> wide_children(Address<const Node> nodes, uint root) {
   const Normalisation normalise(Aabb{nodes[0].box_min, nodes[0].box_max});
   const auto area = [&](uint child) {
     const Aabb box{normalise(nodes[child].box_min), normalise(nodes[child].box_max)};

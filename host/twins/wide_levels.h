@@ -8,7 +8,7 @@ namespace coppice::twins {
 
 // Of a wide node rooted at `root` the children in their order: binary nodes, leaves with WIDE_LEAF; behind
 // them WIDE_EMPTY. `nodes` is the whole tree.
-std::array<uint, WIDE_CHILDREN> wide_children(NodeBuffer nodes, uint root);
+std::array<uint, WIDE_CHILDREN> wide_children(Address<const Node> nodes, uint root);
 
 // A level whose `count` nodes follow the first `first` ones, and its sums the words given.
 WideLevel make_level(uint first, uint count, uint first_tile, uint first_block);

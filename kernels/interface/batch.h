@@ -27,13 +27,13 @@ INTERFACE_BUFFER(BatchRangeBuffer, BatchRange, 8)
 INTERFACE_BUFFER(BatchTreeBuffer, BatchTree, 16)
 
 struct BatchBuildArgs {
-  BatchRangeBuffer ranges;   // range_count
-  AabbBuffer boxes;          // primitive_count
-  NodeBuffer nodes;          // 2 * primitive_count; the tree of a range from 2 * first on
-  BatchTreeBuffer trees;     // range_count
-  BuildStateBuffer state;    // error bits of all trees; primitive_count: the ranges that were asked for
-  UintBuffer count_at;       // null, or how many of the ranges count
-  UintBuffer primitives_at;  // null, or how many of the primitives count
+  READS(BatchRangeBuffer) ranges;  // range_count
+  READS(AabbBuffer) boxes;         // primitive_count
+  NodeBuffer nodes;                // 2 * primitive_count; the tree of a range from 2 * first on
+  BatchTreeBuffer trees;           // range_count
+  BuildStateBuffer state;          // error bits of all trees; primitive_count: the ranges that were asked for
+  READS(UintBuffer) count_at;      // null, or how many of the ranges count
+  READS(UintBuffer) primitives_at;  // null, or how many of the primitives count
   uint range_count;
   uint primitive_count;
   uint key_words;  // 1: 30-bit codes, 2: 60-bit codes

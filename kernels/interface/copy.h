@@ -16,8 +16,8 @@ const uint COPY_TILE = COPY_GROUP * COPY_PER_INVOCATION;
 INTERFACE_BUFFER(WordQuadBuffer, uvec4, 16)
 
 struct CopyWordsArgs {
-  WordQuadBuffer source;  // quad_count
-  WordQuadBuffer target;  // quad_count
+  READS(WordQuadBuffer) source;  // quad_count
+  WordQuadBuffer target;         // quad_count
   uint quad_count;
   uint padding;
 };

@@ -12,11 +12,12 @@ const uint GATHER_TRIANGLES_TILE = GATHER_TRIANGLES_GROUP * GATHER_TRIANGLES_PER
 const uint GATHERED_INACTIVE = 0x7fc00000u;
 
 struct GatherTrianglesArgs {
-  UintBuffer vertices;  // vertex_count: three floats at the start of each vertex_stride bytes
-  UintBuffer indices;  // 3 * triangle_count, index_bytes each; null: corner k of triangle i is vertex 3 i + k
-  UintBuffer transform;      // three rows of four floats; null: none
-  TriangleBuffer triangles;  // triangle_count
-  UintBuffer count_at;       // null, or how many of them count
+  READS(UintBuffer) vertices;  // vertex_count: three floats at the start of each vertex_stride bytes
+  READS(UintBuffer)
+  indices;  // 3 * triangle_count, index_bytes each; null: corner k of triangle i is vertex 3 i + k
+  READS(UintBuffer) transform;  // three rows of four floats; null: none
+  TriangleBuffer triangles;     // triangle_count
+  READS(UintBuffer) count_at;   // null, or how many of them count
   uint triangle_count;
   uint vertex_count;
   uint vertex_stride;  // bytes: a multiple of 4, at least 12

@@ -33,10 +33,10 @@ const uint HPLOC_ARRIVAL_SHIFT = 5;
 INTERFACE_COHERENT_BUFFER(CoherentNodeBuffer, Node, 16)
 
 struct HplocBuildArgs {
-  AabbBuffer boxes;   // of the triangles
-  UintBuffer keys;    // Morton codes in ascending order, key_words each, low word first
-  UintBuffer values;  // triangle indices in the same order, active ones first
-  NodeBuffer nodes;   // 2 * active_count - 1
+  READS(AabbBuffer) boxes;   // of the triangles
+  READS(UintBuffer) keys;    // Morton codes in ascending order, key_words each, low word first
+  READS(UintBuffer) values;  // triangle indices in the same order, active ones first
+  NodeBuffer nodes;          // 2 * active_count - 1
   CoherentNodeBuffer
       clusters;  // active_count: those left of a node whose parent lies in no tile, from its first place on
   CoherentUintBuffer cluster_names;  // active_count: their names

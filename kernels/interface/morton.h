@@ -9,11 +9,11 @@ const uint MORTON_TILE = MORTON_GROUP * MORTON_PER_INVOCATION;
 const uint MORTON_INACTIVE = 0xffffffffu;  // every key word of an inactive triangle: sorts behind all codes
 
 struct MortonCodesArgs {
-  AabbBuffer boxes;        // triangle_count
-  BuildStateBuffer state;  // scene box, read
-  UintBuffer keys;         // triangle_count * key_words, low word first
-  UintBuffer values;       // triangle_count: triangle indices
-  UintBuffer count_at;     // null, or how many of them count
+  READS(AabbBuffer) boxes;        // triangle_count
+  READS(BuildStateBuffer) state;  // scene box, read
+  UintBuffer keys;                // triangle_count * key_words, low word first
+  UintBuffer values;              // triangle_count: triangle indices
+  READS(UintBuffer) count_at;     // null, or how many of them count
   uint triangle_count;
   uint key_words;  // 1: 30-bit codes, 2: 60-bit codes
 };

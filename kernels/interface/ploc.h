@@ -42,17 +42,17 @@ struct PlocRound {
 INTERFACE_BUFFER(PlocRoundBuffer, PlocRound, 16)
 
 struct PlocLeavesArgs {
-  AabbBuffer boxes;        // triangle_count
-  UintBuffer values;       // triangle indices in Morton order, active ones first
-  NodeBuffer clusters;     // active_count leaves, in Morton order
-  BuildStateBuffer state;  // active_count, read
-  PlocRoundBuffer rounds;  // the first one is written
+  READS(AabbBuffer) boxes;        // triangle_count
+  READS(UintBuffer) values;       // triangle indices in Morton order, active ones first
+  NodeBuffer clusters;            // active_count leaves, in Morton order
+  READS(BuildStateBuffer) state;  // active_count, read
+  PlocRoundBuffer rounds;         // the first one is written
   uint triangle_count;
   uint padding;
 };
 
 struct PlocMergeArgs {
-  NodeBuffer clusters_in;
+  READS(NodeBuffer) clusters_in;
   NodeBuffer clusters_out;
   UintBuffer
       partners;  // a cluster: whom it merges with; itself; or PLOC_RETIRES, where another merges with it

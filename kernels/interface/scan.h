@@ -22,21 +22,21 @@ const uint SCAN_HALF_BITS = 16;
 const uint SCAN_MAX_TILES = 1 << (30 - SCAN_HALF_BITS);
 
 struct PrefixScanArgs {
-  WordQuadBuffer source;  // word_count
-  WordQuadBuffer target;  // word_count; without lookback it may be the source
+  READS(WordQuadBuffer) source;  // word_count
+  WordQuadBuffer target;         // word_count; without lookback it may be the source
   CoherentUintBuffer
       tile_status;            // lookback: tiles * SCAN_SUMS words of it; else the exclusive sums of the tiles
   CoherentUintBuffer ticket;  // one word
   BuildStateBuffer state;     // primitive_count and error word
-  UintBuffer count_at;
+  READS(UintBuffer) count_at;
   uint word_count;
   uint lookback;  // 1: tile prefixes by lookback; 0: from scan_tile_sums and a scan of them
 };
 
 struct ScanTileSumsArgs {
-  WordQuadBuffer source;  // word_count
-  UintBuffer tile_sums;   // tiles
-  UintBuffer count_at;
+  READS(WordQuadBuffer) source;  // word_count
+  UintBuffer tile_sums;          // tiles
+  READS(UintBuffer) count_at;
   uint word_count;
   uint padding;
 };

@@ -38,9 +38,9 @@ const uint SORT_SCAN_TILE = 16384;
 const uint SORT_TILE_SCAN_GROUP = 256;
 
 struct SortHistogramArgs {
-  UintBuffer keys;       // count * key_words
-  UintBuffer histogram;  // key_words * 4 * SORT_DIGITS, zero at the start
-  UintBuffer count_at;
+  READS(UintBuffer) keys;  // count * key_words
+  UintBuffer histogram;    // key_words * 4 * SORT_DIGITS, zero at the start
+  READS(UintBuffer) count_at;
   uint count;
   uint key_words;
 };
@@ -52,13 +52,13 @@ struct SortDigitScanArgs {
 };
 
 struct SortPassArgs {
-  UintBuffer keys_in, values_in;  // keys alone have no values: null
+  READS(UintBuffer) keys_in, values_in;  // keys alone have no values: null
   UintBuffer keys_out, values_out;
-  UintBuffer digit_offsets;        // SORT_DIGITS, of this pass
-  CoherentUintBuffer tile_status;  // tiles * SORT_DIGITS lookback words
-  CoherentUintBuffer ticket;       // one word
-  BuildStateBuffer state;          // primitive_count and error word
-  UintBuffer count_at;
+  READS(UintBuffer) digit_offsets;  // SORT_DIGITS, of this pass
+  CoherentUintBuffer tile_status;   // tiles * SORT_DIGITS lookback words
+  CoherentUintBuffer ticket;        // one word
+  BuildStateBuffer state;           // primitive_count and error word
+  READS(UintBuffer) count_at;
   uint count;
   uint key_words;
   uint pass;
@@ -68,13 +68,13 @@ struct SortPassArgs {
 // Shared by counting and scattering. The digit is that of `digit_bits` bits from bit `digit_shift` of the
 // key's `digit_word`-th word; above bit 31 there are zeroes.
 struct SortScatterArgs {
-  UintBuffer keys_in, values_in;
+  READS(UintBuffer) keys_in, values_in;
   UintBuffer keys_out, values_out;
   // tiles << digit_bits. sort_tile_counts leaves counts, sort_tile_scan where the first key of each tile and
   // digit goes, sort_scatter where one more would go.
   UintBuffer tile_digits;
   BuildStateBuffer state;  // primitive_count and error word; written by sort_scatter
-  UintBuffer count_at;
+  READS(UintBuffer) count_at;
   uint count;
   uint key_words;
   uint digit_word, digit_shift, digit_bits;
@@ -83,7 +83,7 @@ struct SortScatterArgs {
 
 struct SortTileScanArgs {
   UintBuffer tile_digits;  // tiles << digit_bits counts, replaced by exclusive sums over (digit, tile)
-  UintBuffer count_at;
+  READS(UintBuffer) count_at;
   uint count;
   uint tile_keys;
   uint digit_bits;

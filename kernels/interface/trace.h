@@ -98,7 +98,7 @@ INTERFACE_BUFFER(TraceCountersBuffer, TraceCounters, 16)
 INTERFACE_BUFFER(Vec3Buffer, vec3, 4)
 
 struct CameraRaysArgs {
-  FilmBuffer film;
+  READS(FilmBuffer) film;
   RayBuffer rays;  // ray_count
   HitBuffer hits;  // ray_count, set to misses
   uint first_ray;  // of the picture
@@ -111,15 +111,15 @@ struct CameraRaysArgs {
 // are looked at. A ray's mask is `ray_mask` or, where there are `ray_masks`, what it has in common with its
 // word there; the closest hit is the closest one on a primitive that the ray sees, opaque or not.
 struct TraceClosestArgs {
-  NodeBuffer nodes;
-  TriangleBuffer triangles;
-  RayBuffer rays;
+  READS(NodeBuffer) nodes;
+  READS(TriangleBuffer) triangles;
+  READS(RayBuffer) rays;
   HitBuffer hits;  // read and improved
   TraceCountersBuffer counters;
   BuildStateBuffer state;
-  UintBuffer primitive_flags;  // one a primitive; null: PRIMITIVE_FLAGS_DEFAULT
-  UintBuffer ray_masks;        // one a ray; may be null
-  UintBuffer count_at;         // may be null
+  READS(UintBuffer) primitive_flags;  // one a primitive; null: PRIMITIVE_FLAGS_DEFAULT
+  READS(UintBuffer) ray_masks;        // one a ray; may be null
+  READS(UintBuffer) count_at;         // may be null
   uint ray_count;
   uint ray_mask;
   uint stack_entries;  // a tree of greater height is refused (ERROR_TREE_TOO_DEEP)
@@ -130,17 +130,17 @@ struct TraceClosestArgs {
 
 // Watertight and robust; the hits of these tests do not depend on the order of traversal.
 struct TraceWideArgs {
-  WideNodeBuffer wide_nodes;
-  WideCountsBuffer wide_counts;  // no nodes: nothing is hit
-  NodeBuffer nodes;              // the binary tree; only its root's box is read
-  TriangleBuffer triangles;
-  RayBuffer rays;
+  READS(WideNodeBuffer) wide_nodes;
+  READS(WideCountsBuffer) wide_counts;  // no nodes: nothing is hit
+  READS(NodeBuffer) nodes;              // the binary tree; only its root's box is read
+  READS(TriangleBuffer) triangles;
+  READS(RayBuffer) rays;
   HitBuffer hits;  // read and improved
   TraceCountersBuffer counters;
   BuildStateBuffer state;
-  UintBuffer primitive_flags;  // this and what follows as in TraceClosestArgs
-  UintBuffer ray_masks;
-  UintBuffer count_at;
+  READS(UintBuffer) primitive_flags;  // this and what follows as in TraceClosestArgs
+  READS(UintBuffer) ray_masks;
+  READS(UintBuffer) count_at;
   uint ray_count;
   uint ray_mask;
 };
@@ -150,15 +150,15 @@ struct TraceWideArgs {
 // With the watertight and the robust test the answer does not depend on the order of visits; it is then,
 // without flags and masks, whether the closest hit is one. A tree higher than the stack hits nothing.
 struct TraceAnyArgs {
-  NodeBuffer nodes;
-  TriangleBuffer triangles;
-  RayBuffer rays;
+  READS(NodeBuffer) nodes;
+  READS(TriangleBuffer) triangles;
+  READS(RayBuffer) rays;
   UintBuffer any_hits;  // out, a word a ray: 1 or 0
   TraceCountersBuffer counters;
   BuildStateBuffer state;
-  UintBuffer primitive_flags;  // this and what follows as in TraceClosestArgs
-  UintBuffer ray_masks;
-  UintBuffer count_at;
+  READS(UintBuffer) primitive_flags;  // this and what follows as in TraceClosestArgs
+  READS(UintBuffer) ray_masks;
+  READS(UintBuffer) count_at;
   uint ray_count;
   uint ray_mask;
   uint stack_entries;
@@ -169,17 +169,17 @@ struct TraceAnyArgs {
 
 // The same through a wide tree, watertight and robust.
 struct TraceWideAnyArgs {
-  WideNodeBuffer wide_nodes;
-  WideCountsBuffer wide_counts;
-  NodeBuffer nodes;
-  TriangleBuffer triangles;
-  RayBuffer rays;
+  READS(WideNodeBuffer) wide_nodes;
+  READS(WideCountsBuffer) wide_counts;
+  READS(NodeBuffer) nodes;
+  READS(TriangleBuffer) triangles;
+  READS(RayBuffer) rays;
   UintBuffer any_hits;
   TraceCountersBuffer counters;
   BuildStateBuffer state;
-  UintBuffer primitive_flags;
-  UintBuffer ray_masks;
-  UintBuffer count_at;
+  READS(UintBuffer) primitive_flags;
+  READS(UintBuffer) ray_masks;
+  READS(UintBuffer) count_at;
   uint ray_count;
   uint ray_mask;
 };
@@ -189,15 +189,15 @@ struct TraceWideAnyArgs {
 // smaller primitive first. Neither depends on the order of visits, nor on the internal nodes. An entry beyond
 // the range of float is none. A leaf each, where a primitive has several.
 struct TraceCandidatesArgs {
-  NodeBuffer nodes;
-  RayBuffer rays;
+  READS(NodeBuffer) nodes;
+  READS(RayBuffer) rays;
   BoxCandidateBuffer candidates;  // out, `capacity` a ray; those beyond the count are not written
   UintBuffer candidate_counts;    // out, a word a ray; may be more than the capacity
   TraceCountersBuffer counters;   // a hit is a ray with candidates
   BuildStateBuffer state;
-  UintBuffer primitive_flags;  // this and what follows as in TraceClosestArgs
-  UintBuffer ray_masks;
-  UintBuffer count_at;
+  READS(UintBuffer) primitive_flags;  // this and what follows as in TraceClosestArgs
+  READS(UintBuffer) ray_masks;
+  READS(UintBuffer) count_at;
   uint ray_count;
   uint ray_mask;
   uint stack_entries;
@@ -206,16 +206,16 @@ struct TraceCandidatesArgs {
 
 // No hit yet for each ray.
 struct TraceMissesArgs {
-  RayBuffer rays;
-  HitBuffer hits;       // out
-  UintBuffer count_at;  // as in TraceClosestArgs
+  READS(RayBuffer) rays;
+  HitBuffer hits;              // out
+  READS(UintBuffer) count_at;  // as in TraceClosestArgs
   uint ray_count;
   uint padding;
 };
 
 struct TraceBruteForceArgs {
-  TriangleBuffer triangles;
-  RayBuffer rays;
+  READS(TriangleBuffer) triangles;
+  READS(RayBuffer) rays;
   HitBuffer hits;  // read and improved
   TraceCountersBuffer counters;
   uint ray_count;
@@ -227,9 +227,9 @@ struct TraceBruteForceArgs {
 };
 
 struct BounceRaysArgs {
-  TriangleBuffer triangles;
-  RayBuffer rays;          // ray_count
-  HitBuffer hits;          // ray_count
+  READS(TriangleBuffer) triangles;
+  READS(RayBuffer) rays;   // ray_count
+  READS(HitBuffer) hits;   // ray_count
   RayBuffer bounced;       // ray_count; hits nothing where nothing was hit
   HitBuffer bounced_hits;  // ray_count, set to misses
   uint ray_count;
@@ -237,22 +237,22 @@ struct BounceRaysArgs {
 };
 
 struct ShadeArgs {
-  TriangleBuffer triangles;
-  UintBuffer material_index;  // one a triangle
-  SurfaceMaterialBuffer materials;
-  LightingBuffer lighting;
-  RayBuffer rays;
-  HitBuffer hits;
+  READS(TriangleBuffer) triangles;
+  READS(UintBuffer) material_index;  // one a triangle
+  READS(SurfaceMaterialBuffer) materials;
+  READS(LightingBuffer) lighting;
+  READS(RayBuffer) rays;
+  READS(HitBuffer) hits;
   Vec3Buffer radiance;  // ray_count; summed over the samples
   uint ray_count;
   uint sample_index;
 };
 
 struct ResolveArgs {
-  FilmBuffer film;
-  Vec3Buffer radiance;         // one a ray
-  UintBuffer srgb_thresholds;  // 256 floats as bits: the least linear value of each 8-bit sRGB code
-  UintBuffer image;            // RGBA8, red in the low byte, rows top to bottom
+  READS(FilmBuffer) film;
+  READS(Vec3Buffer) radiance;         // one a ray
+  READS(UintBuffer) srgb_thresholds;  // 256 floats as bits: the least linear value of each 8-bit sRGB code
+  UintBuffer image;                   // RGBA8, red in the low byte, rows top to bottom
   uint first_ray;
   uint ray_count;
 };

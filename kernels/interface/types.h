@@ -1,6 +1,8 @@
 // What host code and kernels both read: this folder is compiled by g++ and by glslang.
-// Every struct is padded to its alignment by hand, since scalar layout does not pad nested structs and C++
-// does.
+// Args say what their stages do with memory: READS(Buffer) is only read, by whichever stage has these Args; a
+// Buffer may be written. Steps that write nothing that another reads or writes may overlap
+// (stages/hazards.h). Every struct is padded to its alignment by hand, since scalar layout does not pad
+// nested structs and C++ does.
 #ifndef COPPICE_INTERFACE_TYPES_H
 #define COPPICE_INTERFACE_TYPES_H
 
@@ -10,12 +12,14 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <type_traits>
 
 #define INTERFACE_BEGIN namespace coppice {
 #define INTERFACE_END }
 // A typed address: of device memory when a kernel reads it, of host memory when its twin does.
 #define INTERFACE_BUFFER(Name, Type, Alignment) using Name = Address<Type>;
 #define INTERFACE_COHERENT_BUFFER(Name, Type, Alignment) using Name = Address<Type>;
+#define READS(Name) Name::ReadOnly
 
 namespace coppice {
 using uint = std::uint32_t;
@@ -25,10 +29,14 @@ using glm::vec3;
 
 template <class T>
 struct Address {
+  using ReadOnly = Address<const T>;
+
   std::uint64_t value = 0;
 
   // Only for addresses of host memory, so only in twins.
   T& operator[](std::size_t index) const { return reinterpret_cast<T*>(value)[index]; }
+
+  operator ReadOnly() const requires(!std::is_const_v<T>) { return {value}; }
 };
 }  // namespace coppice
 
@@ -50,6 +58,8 @@ spirv_execution_mode(extensions = ["SPV_KHR_float_controls"], capabilities = [44
 
 #define INTERFACE_BEGIN
 #define INTERFACE_END
+// glslang does not hold a reference to `readonly`: the lockstep does, as the twin has a const address there.
+#define READS(Name) Name
 #define INTERFACE_BUFFER(Name, Type, Alignment) \
   layout(buffer_reference, scalar, buffer_reference_align = Alignment) buffer Name { Type at[]; };
 // For words that other workgroups write while this one reads them. Old lavapipe hoists plain polls out of

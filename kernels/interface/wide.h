@@ -78,7 +78,7 @@ INTERFACE_BUFFER(WideLevelBuffer, WideLevel, 16)
 INTERFACE_BUFFER(WideCountsBuffer, WideCounts, 16)
 
 struct WideCollapseArgs {
-  NodeBuffer nodes;         // the binary tree
+  READS(NodeBuffer) nodes;  // the binary tree
   WideEntryBuffer entries;  // one a wide node, like children
   UintBuffer children;      // WIDE_CHILDREN each: binary nodes, leaves with WIDE_LEAF; or WIDE_EMPTY
   UintBuffer tile_sums;     // children that are wide nodes, by tile; zero before
@@ -91,20 +91,20 @@ struct WideCollapseArgs {
 };
 
 struct WideSizesArgs {
-  WideEntryBuffer entries;
+  READS(WideEntryBuffer) entries;
   UintBuffer sizes;    // out: wide nodes of the subtree
   UintBuffer offsets;  // out: of the children, their places in depth-first order counted from the parent's
-  WideLevelBuffer levels;
+  READS(WideLevelBuffer) levels;
   uint level;
   uint padding;
 };
 
 struct WideQuantiseArgs {
-  NodeBuffer nodes;
-  WideEntryBuffer entries;
-  UintBuffer children;
-  UintBuffer offsets;
-  WideCountsBuffer counts;
+  READS(NodeBuffer) nodes;
+  READS(WideEntryBuffer) entries;
+  READS(UintBuffer) children;
+  READS(UintBuffer) offsets;
+  READS(WideCountsBuffer) counts;
   WideNodeBuffer wide_nodes;  // node_count, in depth-first order
 };
 
