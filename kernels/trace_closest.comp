@@ -2,7 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/trace.h"
-#include "lib/device_count.glsl"
+#include "lib/count_error.glsl"
 #include "lib/ray_words.glsl"
 #include "lib/trace_counters.glsl"
 
@@ -23,6 +23,7 @@ layout(constant_id = 5) const bool TRACE_MASKED = true;  // false: every ray see
 void main() {
   uint i = gl_GlobalInvocationID.x;
   bool present = i < counted(args.count_at, args.ray_count);
+  if (i == 0u) note_ray_count(args.state, args.count_at, args.ray_count);
   if (args.state.at[0].active_count != 0u && args.nodes.at[0].height > TRACE_STACK) {
     atomicOr(args.state.at[0].error_word, ERROR_TREE_TOO_DEEP);
     return;

@@ -7,7 +7,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/trace.h"
-#include "lib/device_count.glsl"
+#include "lib/count_error.glsl"
 #include "lib/ray_words.glsl"
 #include "lib/search.glsl"
 #include "lib/trace_counters.glsl"
@@ -204,6 +204,7 @@ uvec2 keep_hits() {
 
 void main() {
   ray_count = counted(args.count_at, args.ray_count);
+  if (gl_GlobalInvocationID.x == 0u) note_ray_count(args.state, args.count_at, args.ray_count);
   uint visited = 0u;
   Node root = Node(vec3(0.0), 0u, vec3(0.0), 0u);
   bool has_tree = args.wide_counts.at[0].node_count != 0u;

@@ -57,6 +57,13 @@ DeviceUse traces_by(Walk walk) {
   return use;
 }
 
+// What objects of the library do beside.
+DeviceUse library_use(Walk walk = Walk::binary) {
+  DeviceUse use = traces_by(walk);
+  use.inputs = use.batches = use.sorts = use.scans = use.every_ray = true;
+  return use;
+}
+
 // The line with which a device is refused; empty where it is not.
 std::string refusal(const DeviceUse& use, const Fault& fault, Device& device = test_device()) {
   try {
@@ -134,6 +141,45 @@ TEST_F(SelfCheck, RefusesADeviceByTheTracerThatIsGoingToRun) {
        {traces_by(Walk::binary), traces_by(Walk::wide_packets), traces_by(Walk::wide_single)}) {
     EXPECT_TRUE(says(refusal(use, one_turn), "finds wrong hits"));
     EXPECT_TRUE(says(refusal(use, half), "finds wrong hits"));
+  }
+}
+
+TEST_F(SelfCheck, PassesWithAllThatTheLibraryDoes) {
+  for (const Walk walk : {Walk::binary, Walk::wide_packets, Walk::wide_single}) {
+    for (const bool values : {false, true}) {
+      DeviceUse use = library_use(walk);
+      use.sorts_values = values;
+      use.build.variants = default_variants(test_device().properties());
+      EXPECT_TRUE(check_device(test_device(), use));
+    }
+  }
+  Device like_a_gpu({"", false, true});
+  EXPECT_TRUE(check_device(like_a_gpu, library_use()));
+}
+
+// Every stage that only the library runs, where it does half of its work.
+TEST_F(SelfCheck, RefusesADeviceByWhatTheLibraryDoes) {
+  const std::pair<const char*, const char*> stages[] = {{"gather_triangles", "computes a wrong tree"},
+                                                        {"box_bounds", "computes a wrong tree"},
+                                                        {"batch_build", "computes a wrong tree"},
+                                                        {"trace_misses", "finds wrong hits"},
+                                                        {"trace_any", "finds wrong hits"},
+                                                        {"trace_candidates", "finds wrong hits"},
+                                                        {"sort_scatter", "sorts wrong"},
+                                                        {"prefix_scan", "computes wrong prefix sums"}};
+  for (const auto& [stage, wrong] : stages) {
+    std::size_t spoilt = 0;
+    const Fault half = [&, name = stage](std::vector<Step>& steps) {
+      for (Step& step : steps) {
+        if (!is_stage(step, name)) continue;
+        dispatch_of(step)->groups.x /= 2;
+        ++spoilt;
+      }
+    };
+    DeviceUse use = library_use();
+    use.build.variants.sort = SORT_SCAN_8;
+    EXPECT_TRUE(says(refusal(use, half), wrong)) << stage;
+    EXPECT_GT(spoilt, 0u) << stage;
   }
 }
 

@@ -30,7 +30,8 @@ BatchBuilder::BatchBuilder(const Context& context, std::uint32_t max_primitives,
   TreeOptions by_ploc = options;
   by_ploc.builder = DeviceBuilder::ploc;
   with_argument_errors([&] { check_build(max_primitives, to_build_options(by_ploc)); });
-  const BuildOptions checked = context.state().checked(to_build_options(by_ploc));
+  const BuildOptions checked = context.state().checked(
+      {.builds = false, .build = to_build_options(by_ploc), .inputs = true, .batches = true});
   plan_ = std::make_unique<Plan>(context.state().device());
   for (const PrimitiveKind kind : {PrimitiveKind::triangles, PrimitiveKind::boxes}) {
     Plan::Primitives& plan = kind == PrimitiveKind::triangles ? plan_->triangles : plan_->boxes;

@@ -40,16 +40,16 @@ bool Context::State::check(const DeviceUse& use) {
   return false;
 }
 
-BuildOptions Context::State::checked(BuildOptions wanted) {
-  wanted.variants = variants_;
-  wanted.lookback = true;
-  wanted.lookback = check({.builds = true, .build = wanted, .traces = {}});
-  return wanted;
+BuildOptions Context::State::checked(DeviceUse use) {
+  use.build.variants = variants_;
+  use.build.lookback = true;
+  use.build.lookback = check(use);
+  return use.build;
 }
 
 TraceOptions Context::State::checked(TraceOptions wanted) {
   wanted = within_loop_turns(wanted, device_.properties());
-  DeviceUse use{.builds = false, .build = {}, .traces = {wanted}};
+  DeviceUse use{.builds = false, .traces = {wanted}, .every_ray = true};
   use.build.variants = variants_;
   check(use);
   return wanted;

@@ -12,7 +12,7 @@ struct Scanner::Plan {
 };
 
 Scanner::Scanner(const Context& context, std::uint32_t max_words) {
-  const BuildOptions checked = context.state().checked(BuildOptions{});
+  const BuildOptions checked = context.state().checked({.builds = false, .scans = true});
   Layout layout = Layout::apart(~std::uint64_t{0});
   const ScanPlan plan = with_argument_errors([&] { return plan_scan(layout, max_words, checked); });
   plan_ = std::make_unique<Plan>(Plan{context.state().device(), std::move(layout), plan});

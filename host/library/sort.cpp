@@ -12,17 +12,6 @@ struct Sorter::Plan {
   BuildPlan sort;
 };
 
-namespace {
-
-// With digits of 8 bits the number of passes is even, so that the last one ends where the first began.
-BuildOptions in_place(BuildOptions options) {
-  if (!options.lookback || options.variants.sort == SORT_SCAN || options.variants.sort == SORT_SCAN_11)
-    options.variants.sort = SORT_SCAN_8;
-  return options;
-}
-
-}  // namespace
-
 Sorter::Sorter(const Context& context, std::uint32_t max_keys, const SortOptions& options) {
   if (options.key_words != 1 && options.key_words != 2)
     throw ArgumentError("key_words: 1 or 2, not " + std::to_string(options.key_words));
@@ -31,7 +20,8 @@ Sorter::Sorter(const Context& context, std::uint32_t max_keys, const SortOptions
                         std::to_string(max_triangles));
   BuildOptions wanted;
   wanted.morton_bits = options.key_words * 30;
-  const BuildOptions checked = in_place(context.state().checked(wanted));
+  const BuildOptions checked = sorted_in_place(context.state().checked(
+      {.builds = false, .build = wanted, .sorts = true, .sorts_values = options.values}));
   Layout layout = Layout::apart(~std::uint64_t{0});
   const BuildPlan plan = plan_sort(layout, max_keys, checked, options.values);
   plan_ = std::make_unique<Plan>(Plan{context.state().device(), std::move(layout), plan});

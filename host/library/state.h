@@ -20,8 +20,8 @@ class Context::State {
   Device& device() { return device_; }
   const Variants& variants() const { return variants_; }
 
-  // The options of a build, after the device has been checked for it.
-  BuildOptions checked(BuildOptions wanted);
+  // The build's options of a use, after the device has been checked for it.
+  BuildOptions checked(DeviceUse use);
   // The same for a trace of trees that any builder has made.
   TraceOptions checked(TraceOptions wanted);
 

@@ -108,6 +108,12 @@ BuildPlan plan_sort(Layout& layout, std::uint32_t key_count, const BuildOptions&
   return plan;
 }
 
+BuildOptions sorted_in_place(BuildOptions options) {
+  if (!options.lookback || options.variants.sort == SORT_SCAN || options.variants.sort == SORT_SCAN_11)
+    options.variants.sort = SORT_SCAN_8;
+  return options;
+}
+
 std::uint32_t ploc_rounds_bound(std::uint32_t clusters, std::uint32_t target) {
   if (clusters <= target) return 0;
   std::uint32_t epoch = 0;

@@ -113,6 +113,9 @@ BuildPlan plan_build(Layout& layout, std::uint32_t primitive_count, const BuildO
 BuildPlan plan_sort(Layout& layout, std::uint32_t key_count, const BuildOptions& options,
                     bool has_values = true);
 
+// Options of a sort that ends where it began: digits of 8 bits make an even number of passes.
+BuildOptions sorted_in_place(BuildOptions options);
+
 // The pairs in unsorted_keys and unsorted_values, or the keys alone, sorted stably by key, to keys[0] and
 // values[0]. `count_at` as in BuildInput.
 void append_sort(Chain& chain, const BuildPlan& plan, UintBuffer count_at = {});

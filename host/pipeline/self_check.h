@@ -9,20 +9,27 @@
 
 namespace coppice {
 
-// What a command is going to do on a device.
+// What a command, or an object of the library, is going to do on a device.
 struct DeviceUse {
-  bool builds = true;                // else the trees that it traces are the host's
-  BuildOptions build{};              // but for `lookback`, which the check decides
-  std::vector<TraceOptions> traces;  // every tracer that it runs; the check has rays of its own
-  std::uint32_t triangle_count = 0;  // of the scene that it traces, by which a walk may be chosen
+  bool builds = true;                  // else the trees that it traces are the host's
+  BuildOptions build{};                // but for `lookback`, which the check decides; of the rest here, too
+  std::vector<TraceOptions> traces{};  // every tracer that it runs; the check has rays of its own
+  std::uint32_t triangle_count = 0;    // of the scene that it traces, by which a walk may be chosen
+  bool inputs = false;                 // vertices, indices, transforms and boxes
+  bool batches = false;                // of small trees
+  bool sorts = false;                  // in place, see sorted_in_place()
+  bool sorts_values = false;           // beside the keys
+  bool scans = false;
+  bool every_ray = false;  // beside closest hits any hits and candidates, and all with flags and masks, too
 };
 
-// Runs it for a small scene on the device and by the twins, before any result is shown: the tree must be the
-// same bit for bit, and so must the hits, which on a GPU may differ within their tolerance (stages/nearly.h).
-// Returns whether lookback works there; if it does not, stages without it are to be used. Throws DeviceError
-// for a device that computes neither right. `fault`, for tests, spoils the steps that the device is going to
-// run.
-bool check_device(Device& device, const DeviceUse& use,
-                  const std::function<void(std::vector<Step>&)>& fault = {});
+// Spoils the steps that a device is going to run: for tests.
+using CheckFault = std::function<void(std::vector<Step>&)>;
+
+// Runs it for a small scene on the device and by the twins, before any result is shown: all that is built
+// must be the same bit for bit, and so must the hits, which on a GPU may differ within their tolerance
+// (stages/nearly.h). Returns whether lookback works there; if it does not, stages without it are to be used.
+// Throws DeviceError for a device that computes wrong either way.
+bool check_device(Device& device, const DeviceUse& use, const CheckFault& fault = {});
 
 }  // namespace coppice

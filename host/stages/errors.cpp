@@ -30,6 +30,7 @@ std::string describe_error_word(std::uint32_t error_word) {
        "planned for"},
       {ERROR_BATCH_RANGE,
        "batch_build: a range has more primitives than a tree of a batch, or lies beyond the last of them"},
+      {ERROR_RAY_COUNT, "a trace: the count of rays on the device is larger than what was planned for"},
       {ERROR_WIDE_TOO_DEEP, "wide_root: the tree is deeper than the conversion to wide nodes takes"},
   };
   std::string description;

@@ -10,4 +10,9 @@ inline void note_count(BuildState& state, Address<const uint> at, uint most) {
   if (state.primitive_count > most) state.error_word |= ERROR_COUNT;
 }
 
+// The same of rays, whose number nobody keeps.
+inline void note_ray_count(BuildState& state, Address<const uint> at, uint most) {
+  if (at.value != 0 && at[0] > most) state.error_word |= ERROR_RAY_COUNT;
+}
+
 }  // namespace coppice::twins

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "interface/trace.h"
-#include "twins/device_count.h"
+#include "twins/count_error.h"
 #include "twins/intersect.h"
 #include "twins/sight.h"
 #include "twins/trace_counts.h"
@@ -68,6 +68,7 @@ void trace_any(const TraceAnyArgs& args) {
     empty = true;
   }
   const uint ray_count = counted(args.count_at, args.ray_count);
+  note_ray_count(args.state[0], args.count_at, args.ray_count);
   for (uint i = 0; i < ray_count; ++i) {
     TraceRay ray(args.rays[i]);
     bool hits = false;

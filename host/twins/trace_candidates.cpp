@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "interface/trace.h"
-#include "twins/device_count.h"
+#include "twins/count_error.h"
 #include "twins/intersect.h"
 #include "twins/sight.h"
 #include "twins/trace_counts.h"
@@ -48,6 +48,7 @@ void trace_candidates(const TraceCandidatesArgs& args) {
     empty = true;
   }
   const uint ray_count = counted(args.count_at, args.ray_count);
+  note_ray_count(args.state[0], args.count_at, args.ray_count);
   for (uint i = 0; i < ray_count; ++i) {
     TraceRay ray(args.rays[i]);
     std::vector<BoxCandidate> candidates;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "interface/trace.h"
-#include "twins/device_count.h"
+#include "twins/count_error.h"
 #include "twins/intersect.h"
 #include "twins/sight.h"
 #include "twins/trace_counts.h"
@@ -193,6 +193,7 @@ uint trace_packet(const TraceWideArgs& args, uint first, uint count) {
 void trace_wide(const TraceWideArgs& args) {
   TraceCounters& counters = args.counters[0];
   const uint ray_count = counted(args.count_at, args.ray_count);
+  note_ray_count(args.state[0], args.count_at, args.ray_count);
   for (uint first = 0; first < ray_count; first += TRACE_PACKET) {
     const uint count = std::min(TRACE_PACKET, ray_count - first);
     if (args.wide_counts[0].node_count != 0)

@@ -2,7 +2,7 @@
 #include <vector>
 
 #include "interface/trace.h"
-#include "twins/device_count.h"
+#include "twins/count_error.h"
 #include "twins/intersect.h"
 #include "twins/sight.h"
 #include "twins/trace_counts.h"
@@ -48,6 +48,7 @@ bool hits_any(const TraceWideAnyArgs& args, const TraceRay& ray, const Sight& si
 void trace_wide_any(const TraceWideAnyArgs& args) {
   TraceCounters& counters = args.counters[0];
   const uint ray_count = counted(args.count_at, args.ray_count);
+  note_ray_count(args.state[0], args.count_at, args.ray_count);
   for (uint i = 0; i < ray_count; ++i) {
     TraceRay ray(args.rays[i]);
     bool hits = false;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "interface/trace.h"
-#include "twins/device_count.h"
+#include "twins/count_error.h"
 #include "twins/intersect.h"
 #include "twins/sight.h"
 #include "twins/trace_counts.h"
@@ -67,6 +67,7 @@ uint trace(const TraceWideArgs& args, const TraceRay& ray, const Sight& sight, H
 void trace_wide_single(const TraceWideArgs& args) {
   TraceCounters& counters = args.counters[0];
   const uint ray_count = counted(args.count_at, args.ray_count);
+  note_ray_count(args.state[0], args.count_at, args.ray_count);
   for (uint i = 0; i < ray_count; ++i) {
     TraceRay ray(args.rays[i]);
     if (args.wide_counts[0].node_count != 0 && ray.is_sound) {

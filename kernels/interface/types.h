@@ -114,6 +114,7 @@ const uint ERROR_SCAN_LOOKBACK = 32u;
 const uint ERROR_WIDE_TOO_DEEP = 64u;
 const uint ERROR_COUNT = 128u;
 const uint ERROR_BATCH_RANGE = 256u;
+const uint ERROR_RAY_COUNT = 512u;
 
 // What the build knows of itself. Zero at the start of a build.
 struct BuildState {

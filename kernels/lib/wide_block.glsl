@@ -6,7 +6,7 @@
 // ray's walk depends on the others.
 //
 // Needs `args`, the constants TRACE_MAX_TURNS and TRACE_MASKED, and SEARCH, and after it the functions below.
-#include "device_count.glsl"
+#include "count_error.glsl"
 #include "ray_words.glsl"
 #include "subgroup.glsl"
 #include "trace_counters.glsl"
@@ -84,6 +84,7 @@ uint take_ray(inout Walk w, uint index, bool has_tree, Aabb scene) {
 
 void trace_block() {
   uint ray_count = counted(args.count_at, args.ray_count);
+  if (gl_GlobalInvocationID.x == 0u) note_ray_count(args.state, args.count_at, args.ray_count);
   uint first = min(gl_WorkGroupID.x * TRACE_BLOCK, ray_count), end = min(first + TRACE_BLOCK, ray_count);
   uint taken = first;
   WideTree tree = WideTree(args.wide_nodes, args.triangles);

@@ -1,8 +1,24 @@
 #include "support/test_device.h"
 
+#include <execinfo.h>
+#include <unistd.h>
+
+#include <array>
+#include <exception>
 #include <random>
 
 namespace coppice {
+
+namespace {
+
+// What ends the process on a thread of a driver's or a layer's own: says where that was, beside what.
+const std::terminate_handler say_what = std::set_terminate([] {
+  std::array<void*, 64> frames;
+  backtrace_symbols_fd(frames.data(), backtrace(frames.data(), frames.size()), STDERR_FILENO);
+  say_what();
+});
+
+}  // namespace
 
 Device& test_device() {
   static Device device({"", true, false});

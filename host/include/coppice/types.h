@@ -114,5 +114,6 @@ typedef struct CoppiceBatchTree {
 #define COPPICE_ERROR_WIDE_TOO_DEEP 64u
 #define COPPICE_ERROR_BATCH_RANGE 256u /* a range of a batch is too large or beyond the primitives */
 #define COPPICE_ERROR_COUNT 128u       /* a count on the device is larger than its maximum */
+#define COPPICE_ERROR_RAY_COUNT 512u   /* the same of rays: set in the state of their tree */
 
 #endif
