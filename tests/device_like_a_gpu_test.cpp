@@ -10,7 +10,9 @@
 #include "render/frame.h"
 #include "scene/hard_cases.h"
 #include "stages/gpu_executor.h"
+#include "stages/lockstep_executor.h"
 #include "support/device_run.h"
+#include "support/wide.h"
 
 namespace coppice {
 namespace {
@@ -117,6 +119,18 @@ TEST_F(LikeAGpu, SameTreesOfABatch) {
     const auto tree = std::span(nodes).subspan(2 * std::size_t{range.first}, alone.nodes.size());
     EXPECT_EQ(tree_hash(tree), tree_hash(alone.nodes)) << range.count;
   }
+}
+
+TEST_F(LikeAGpu, WideNodesOfADeepTree) {
+  const std::vector<Node> nodes =
+      below_a_chain(build_on(test_device(), random_triangles(20000, 5, 0.01f), {}).nodes, 230);
+  Layout layout(device().properties().max_block_bytes);
+  const UploadedTree uploaded = plan_uploaded(layout, nodes);
+  LockstepExecutor executor(device(), layout);
+  upload_tree(executor, uploaded.tree, nodes);
+  const auto difference =
+      executor.run([&](Chain& chain) { append_wide(chain, uploaded.tree, uploaded.wide); });
+  EXPECT_FALSE(difference) << difference->stage << ", " << difference->slot;
 }
 
 TEST_F(LikeAGpu, SameHitsThroughEveryTree) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "analysis/wide_tree.h"
+#include "builders/ploc.h"
 #include "builders/registry.h"
 #include "pipeline/wide_plan.h"
 #include "render/frame.h"
@@ -72,7 +73,7 @@ class WideTreeOfTheHost : public DeviceTest {
  protected:
   static void expect_in_lockstep(std::span<const Node> nodes, uint error_word, const std::string& what) {
     Layout layout(test_device().properties().max_block_bytes);
-    const UploadedTree uploaded = plan_uploaded(layout, nodes);
+    const UploadedTree uploaded = plan_uploaded(layout, nodes, test_device().properties().max_turns());
     LockstepExecutor executor(test_device(), layout);
     upload_tree(executor, uploaded.tree, nodes);
     const auto difference =
@@ -101,6 +102,14 @@ TEST_F(WideTreeOfTheHost, ChainsUpToTheHeightThatIsTaken) {
   for (const uint height : {1u, 2u, 7u, 8u, 255u, WIDE_MAX_HEIGHT})
     expect_in_lockstep(chain_of_leaves(height + 1), 0, std::to_string(height));
   expect_in_lockstep(chain_of_leaves(WIDE_MAX_HEIGHT + 2), ERROR_WIDE_TOO_DEEP, "one too high");
+}
+
+// Most nodes are in levels that have no dispatch of their own, but for drivers that end long loops.
+TEST_F(WideTreeOfTheHost, ManyNodesBelowTheLevelsThatAreDispatched) {
+  const Bvh bvh = build_ploc(random_triangles(150000, 5, 0.01f), {});
+  const std::vector<Node> nodes = below_a_chain(bvh.nodes, 230);
+  expect_in_lockstep(nodes, 0, "below a chain");
+  EXPECT_GT(measure_wide_quality(widen_by_twins(nodes)).levels, WIDE_DISPATCHED_LEVELS + 4);
 }
 
 // --- Planted faults: a twin that does its work and one thing wrong.

@@ -52,6 +52,8 @@ struct DeviceProperties {
   bool lanes_in_step;             // the invocations of a subgroup are the lanes of one vector
   // Old lavapipe silently ends the loops of an invocation after 65,535 turns in all; 0: no limit known.
   std::uint32_t loop_turn_limit;
+  // Turns that are left to loops with a bound of their own.
+  std::uint32_t max_turns() const { return loop_turn_limit == 0 ? 0xffffffffu : loop_turn_limit - 1000; }
 };
 
 // Where programs keep what they can make again: $XDG_CACHE_HOME/coppice, or .cache/coppice in $HOME; empty

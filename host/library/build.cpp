@@ -25,7 +25,9 @@ struct Builder::Plan {
     triangles.build = plan_build(triangles.layout, most, options, PrimitiveKind::triangles);
     boxes.build = plan_build(boxes.layout, most, options, PrimitiveKind::boxes);
     // Rays of boxes find candidates in the binary tree only.
-    if (wide) triangles.wide = plan_wide(triangles.layout, triangles.build, &triangles.build);
+    if (wide)
+      triangles.wide =
+          plan_wide(triangles.layout, triangles.build, &triangles.build, device.properties().max_turns());
   }
 
   BuildSizes sizes() const {

@@ -129,7 +129,7 @@ BuildReport measure_device_build(CheckedDevice& device, std::span<const Triangle
   Layout layout(device.properties().max_block_bytes);
   BuildPlan plan = plan_build(layout, static_cast<std::uint32_t>(triangles.size()), options);
   std::optional<WidePlan> wide;
-  if (runs.wide) wide = plan_wide(layout, plan, &plan);
+  if (runs.wide) wide = plan_wide(layout, plan, &plan, device.properties().max_turns());
   GpuExecutor executor(device.device(), layout);
   executor.upload(plan.triangles, triangles);
   report.device_bytes = device_bytes(layout);

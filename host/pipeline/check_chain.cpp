@@ -77,7 +77,10 @@ std::vector<Ray> check_rays() {
 class Check {
  public:
   Check(const Device& device, const DeviceUse& use, bool lookback)
-      : use_(use), options_(use.build), chain_(device.properties().max_block_bytes) {
+      : use_(use),
+        options_(use.build),
+        max_turns_(device.properties().max_turns()),
+        chain_(device.properties().max_block_bytes) {
     options_.lookback = lookback;
     if (use.builds || !use.traces.empty()) add_tree();
     for (const TraceOptions& trace : use.traces) add_trace(trace);
@@ -107,7 +110,7 @@ class Check {
     chain_.compare(build.nodes, wrong_tree);
     tree_ = build;
     if (std::ranges::any_of(use_.traces, is_wide, &TraceOptions::walk)) {
-      const WidePlan wide = plan_wide(layout(), tree_, &build);
+      const WidePlan wide = plan_wide(layout(), tree_, &build, max_turns_);
       chain_.append([wide, tree = tree_](Chain& chain) { append_wide(chain, tree, wide); });
     }
   }
@@ -214,6 +217,7 @@ class Check {
 
   const DeviceUse& use_;
   BuildOptions options_;
+  std::uint32_t max_turns_;
   CheckChain chain_;
   const std::vector<Triangle> triangles_ = scattered_triangles();
   TreeSlots tree_;

@@ -21,9 +21,9 @@ Variants choose_variants(const Device& device, const std::string& choice, const 
 }  // namespace
 
 TraceOptions within_loop_turns(TraceOptions wanted, const DeviceProperties& device) {
-  if (const std::uint32_t limit = device.loop_turn_limit) {
+  if (device.loop_turn_limit != 0) {
     // Two visits a turn stretch the turns that the driver's loops may take, for a fifth more time.
-    wanted.max_turns = limit - 1000;
+    wanted.max_turns = device.max_turns();
     wanted.visits_per_turn = 2;
   }
   return wanted;

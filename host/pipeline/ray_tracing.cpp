@@ -7,10 +7,10 @@
 namespace coppice {
 
 RayTracing::Slots RayTracing::plan(Layout& layout, std::size_t nodes, std::size_t triangles,
-                                   std::uint32_t most_rays, bool wide) {
+                                   std::uint32_t most_rays, bool wide, std::uint32_t max_turns) {
   Slots slots;
   slots.tree = plan_tree(layout, static_cast<std::uint32_t>(triangles), nodes);
-  if (wide) slots.wide = plan_wide(layout, slots.tree);
+  if (wide) slots.wide = plan_wide(layout, slots.tree, nullptr, max_turns);
   for (RaySlots* const rays : {&slots.rays, &slots.bounced}) {
     const std::string prefix = rays == &slots.rays ? "" : "bounced_";
     rays->rays = layout.add<Ray>(prefix + "rays", most_rays);
@@ -25,7 +25,7 @@ RayTracing::RayTracing(Device& device, std::span<const Node> nodes, std::span<co
                        std::uint32_t most_rays, bool wide)
     : device_(device),
       layout_(device.properties().max_block_bytes),
-      slots_(plan(layout_, nodes.size(), triangles.size(), most_rays, wide)),
+      slots_(plan(layout_, nodes.size(), triangles.size(), most_rays, wide, device.properties().max_turns())),
       gpu_(device, layout_),
       cpu_(layout_) {
   state_.active_count = static_cast<uint>((nodes.size() + 1) / 2);

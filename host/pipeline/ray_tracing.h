@@ -56,7 +56,7 @@ class RayTracing {
     AnyHitSlots any;  // of the same rays
   };
   static Slots plan(Layout& layout, std::size_t nodes, std::size_t triangles, std::uint32_t most_rays,
-                    bool wide);
+                    bool wide, std::uint32_t max_turns);
   void convert();
   template <class Executor>
   void upload_rays(Executor& executor, std::span<const Ray> rays) const;

@@ -48,11 +48,12 @@ std::uint32_t wide_nodes_bound(std::uint32_t leaves) {
   return static_cast<std::uint32_t>(3 * std::uint64_t{leaves} / 5);
 }
 
-WidePlan plan_wide(Layout& layout, TreeSlots& tree, const BuildPlan* finished) {
+WidePlan plan_wide(Layout& layout, TreeSlots& tree, const BuildPlan* finished, std::uint32_t max_turns) {
   WidePlan plan;
   const auto leaves = static_cast<std::uint32_t>((tree.nodes.count + 1) / 2);
   const std::uint32_t bound = wide_nodes_bound(leaves);
   plan.levels_bound = bound_levels(leaves);
+  plan.dispatched_levels = max_turns == 0xffffffffu ? WIDE_DISPATCHED_LEVELS : WIDE_MAX_HEIGHT;
   plan.levels = layout.add<WideLevel>("wide_levels", plan.levels_bound + 1);
   // Each level begins a tile and a block of its own.
   plan.tile_sums = layout.add<uint>("wide_tile_sums", divide_up(bound, WIDE_TILE) + plan.levels_bound);
@@ -96,9 +97,26 @@ void append_wide(Chain& chain, const TreeSlots& tree, const WidePlan& plan) {
                             0,
                             0};
   chain.run(stages::wide_root, collapse, {1, 1, 1});
-  for (; collapse.level < plan.levels_bound; ++collapse.level)
+  const std::uint32_t dispatched = std::min(plan.levels_bound, plan.dispatched_levels);
+  for (; collapse.level < dispatched; ++collapse.level)
     chain.run_indirect(stages::wide_collapse, collapse, indirect_groups_of(collapse.level));
-  for (std::uint32_t level = plan.levels_bound; level-- > 0;)
+  if (dispatched < plan.levels_bound) {
+    chain.run(stages::wide_collapse_rest,
+              {collapse.nodes,
+               {entries.value},
+               {children.value},
+               collapse.tile_sums,
+               collapse.block_sums,
+               {levels.value},
+               counts,
+               collapse.state,
+               dispatched,
+               plan.levels_bound},
+              {1, 1, 1});
+    chain.run(stages::wide_sizes_rest,
+              {entries, {sizes.value}, offsets, levels, dispatched, plan.levels_bound}, {1, 1, 1});
+  }
+  for (std::uint32_t level = dispatched; level-- > 0;)
     chain.run_indirect(stages::wide_sizes, {entries, sizes, offsets, levels, level, 0},
                        indirect_groups_of(level));
   chain.run_indirect(

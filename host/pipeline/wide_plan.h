@@ -7,6 +7,7 @@ namespace coppice {
 // Where a conversion of a tree to wide nodes keeps what, beside the tree.
 struct WidePlan {
   std::uint32_t levels_bound = 0;  // levels that any tree of this size, of a height that is taken, may have
+  std::uint32_t dispatched_levels = 0;  // of them have dispatches of their own, if there are so many
 
   Slot<WideLevel> levels;
   Slot<uint> tile_sums, block_sums;
@@ -21,9 +22,11 @@ struct WidePlan {
 std::uint32_t wide_nodes_bound(std::uint32_t leaves);
 
 // Adds the wide nodes to the tree's slots, which may be those of an uploaded tree. Where a build on the
-// device has left the tree its scratch is used once more, and none is added. Throws LayoutError if a slot
-// does not fit a block.
-WidePlan plan_wide(Layout& layout, TreeSlots& tree, const BuildPlan* finished = nullptr);
+// device has left the tree its scratch is used once more, and none is added. `max_turns`: of a kernel's
+// loops, fewer where a driver ends long loops by itself; there no invocation takes many levels. Throws
+// LayoutError if a slot does not fit a block.
+WidePlan plan_wide(Layout& layout, TreeSlots& tree, const BuildPlan* finished = nullptr,
+                   std::uint32_t max_turns = 0xffffffffu);
 
 // The plan for a tree of fewer leaves, in the same slots. Allocates nothing.
 WidePlan with_count(const WidePlan& plan, std::uint32_t leaves);

@@ -11,7 +11,8 @@ FramePlan plan_frame(Layout& layout, const SceneArrays& scene, const FrameOption
   if (options.build) plan.build = plan_build(layout, scene.triangle_count(), *options.build);
   if (!options.build) plan.tree = plan_tree(layout, scene.triangle_count(), options.node_count);
   TreeSlots& tree = plan.build ? *plan.build : plan.tree;
-  if (is_wide(options.trace.walk)) plan.wide = plan_wide(layout, tree, plan.build ? &*plan.build : nullptr);
+  if (is_wide(options.trace.walk))
+    plan.wide = plan_wide(layout, tree, plan.build ? &*plan.build : nullptr, options.trace.max_turns);
   if (plan.build) plan.tree = *plan.build;
   plan.trace =
       plan_trace(layout, plan.tree, static_cast<std::uint32_t>(scene.materials.size()), options.trace);

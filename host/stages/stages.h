@@ -38,6 +38,8 @@
   STAGE(batch_build, BatchBuildArgs, BatchBuildConstants, exactly)                     \
   STAGE(wide_root, WideCollapseArgs, NoConstants, exactly)                             \
   STAGE(wide_collapse, WideCollapseArgs, NoConstants, exactly)                         \
+  STAGE(wide_collapse_rest, WideCollapseRestArgs, NoConstants, exactly)                \
+  STAGE(wide_sizes_rest, WideSizesRestArgs, NoConstants, exactly)                      \
   STAGE(wide_sizes, WideSizesArgs, NoConstants, exactly)                               \
   STAGE(wide_quantise, WideQuantiseArgs, NoConstants, exactly)                         \
   STAGE(camera_rays, CameraRaysArgs, NoConstants, nearly_rays)                         \

@@ -49,6 +49,15 @@ Bytes collapse_bytes(Bytes nodes, const RunCounts& counts) {
   return nodes * (WIDE_CHILDREN * 4 + sizeof(WideEntry)) + opened * 2 * sizeof(Node);
 }
 
+Bytes next_level_bytes(std::uint32_t level, const RunCounts& counts) {
+  return level_of(level, counts) * (WIDE_CHILDREN * 4 + sizeof(WideEntry)) +
+         collapse_bytes(level_of(level + 1, counts), counts);
+}
+
+Bytes sizes_bytes(std::uint32_t level, const RunCounts& counts) {
+  return level_of(level, counts) * (sizeof(WideEntry) + 4) + level_of(level + 1, counts) * (4 + 4);
+}
+
 }  // namespace
 
 // Three vertices by their indices, and the triangle.
@@ -144,12 +153,22 @@ Bytes wide_root(const WideCollapseArgs&, const RunCounts& counts) {
 }
 
 Bytes wide_collapse(const WideCollapseArgs& a, const RunCounts& counts) {
-  return level_of(a.level, counts) * (WIDE_CHILDREN * 4 + sizeof(WideEntry)) +
-         collapse_bytes(level_of(a.level + 1, counts), counts);
+  return next_level_bytes(a.level, counts);
 }
 
-Bytes wide_sizes(const WideSizesArgs& a, const RunCounts& counts) {
-  return level_of(a.level, counts) * (sizeof(WideEntry) + 4) + level_of(a.level + 1, counts) * (4 + 4);
+Bytes wide_collapse_rest(const WideCollapseRestArgs& a, const RunCounts& counts) {
+  Bytes bytes = 0;
+  for (std::uint32_t level = a.level; level < a.level_limit; ++level)
+    bytes += next_level_bytes(level, counts);
+  return bytes;
+}
+
+Bytes wide_sizes(const WideSizesArgs& a, const RunCounts& counts) { return sizes_bytes(a.level, counts); }
+
+Bytes wide_sizes_rest(const WideSizesRestArgs& a, const RunCounts& counts) {
+  Bytes bytes = 0;
+  for (std::uint32_t level = a.level; level < a.level_limit; ++level) bytes += sizes_bytes(level, counts);
+  return bytes;
 }
 
 Bytes wide_quantise(const WideQuantiseArgs&, const RunCounts& counts) {

@@ -32,6 +32,9 @@ const uint WIDE_GROUP = 64;
 const uint WIDE_TILE = 32;   // wide nodes of a level whose children one workgroup finds
 const uint WIDE_BLOCK = 64;  // tiles that are summed together
 
+// Levels that have dispatches of their own. Deeper ones, of which few trees have any, one subgroup takes in
+// turn (wide_collapse_rest, wide_sizes_rest).
+const uint WIDE_DISPATCHED_LEVELS = 32;
 const uint WIDE_MAX_HEIGHT = 256;     // of the binary tree; so levels of the wide one, at most
 const uint WIDE_LEAST_EXPONENT = 27;  // biased, of a step: 2^-100, so that no plane is denormal
 const float WIDE_NODE_STEPS = 512.0;  // no node has a longer extent, in its longest steps
@@ -74,7 +77,9 @@ struct WideCounts {
 };
 
 INTERFACE_BUFFER(WideEntryBuffer, WideEntry, 16)
+INTERFACE_COHERENT_BUFFER(CoherentWideEntryBuffer, WideEntry, 16)
 INTERFACE_BUFFER(WideLevelBuffer, WideLevel, 16)
+INTERFACE_COHERENT_BUFFER(CoherentWideLevelBuffer, WideLevel, 16)
 INTERFACE_BUFFER(WideCountsBuffer, WideCounts, 16)
 
 struct WideCollapseArgs {
@@ -90,6 +95,20 @@ struct WideCollapseArgs {
   uint padding;
 };
 
+// The same for all levels from `level` on: each reads what the ones before have written.
+struct WideCollapseRestArgs {
+  READS(NodeBuffer) nodes;
+  CoherentWideEntryBuffer entries;
+  CoherentUintBuffer children;
+  CoherentUintBuffer tile_sums;
+  CoherentUintBuffer block_sums;
+  CoherentWideLevelBuffer levels;
+  WideCountsBuffer counts;
+  BuildStateBuffer state;
+  uint level;
+  uint level_limit;  // no level has this index
+};
+
 struct WideSizesArgs {
   READS(WideEntryBuffer) entries;
   UintBuffer sizes;    // out: wide nodes of the subtree
@@ -97,6 +116,16 @@ struct WideSizesArgs {
   READS(WideLevelBuffer) levels;
   uint level;
   uint padding;
+};
+
+// The same for all levels from the last one to `level`.
+struct WideSizesRestArgs {
+  READS(WideEntryBuffer) entries;
+  CoherentUintBuffer sizes;
+  UintBuffer offsets;
+  READS(WideLevelBuffer) levels;
+  uint level;
+  uint level_limit;
 };
 
 struct WideQuantiseArgs {

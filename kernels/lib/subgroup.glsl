@@ -15,6 +15,14 @@ void sync() {
   if (!LANES_IN_STEP) subgroupBarrier();
 }
 
+// The same of coherent device memory.
+void sync_memory() {
+  if (!LANES_IN_STEP) {
+    memoryBarrierBuffer();
+    subgroupBarrier();
+  }
+}
+
 // subgroupInclusiveAdd goes lane by lane on CPU devices.
 uint inclusive_add(uint value) {
   [[unroll]] for (uint distance = 1u; distance < LANES; distance <<= 1) {

@@ -33,8 +33,7 @@ TraceOptions test_trace_options(std::uint32_t width, std::uint32_t height) {
   TraceOptions options;
   options.width = width;
   options.height = height;
-  if (const std::uint32_t limit = test_device().properties().loop_turn_limit)
-    options.max_turns = limit - 1000;
+  options.max_turns = test_device().properties().max_turns();
   return options;
 }
 

@@ -15,10 +15,11 @@ struct UploadedTree {
   WidePlan wide;
 };
 
-inline UploadedTree plan_uploaded(Layout& layout, std::span<const Node> nodes) {
+inline UploadedTree plan_uploaded(Layout& layout, std::span<const Node> nodes,
+                                  std::uint32_t max_turns = 0xffffffffu) {
   UploadedTree uploaded;
   uploaded.tree = plan_tree(layout, static_cast<std::uint32_t>((nodes.size() + 1) / 2), nodes.size());
-  uploaded.wide = plan_wide(layout, uploaded.tree);
+  uploaded.wide = plan_wide(layout, uploaded.tree, nullptr, max_turns);
   return uploaded;
 }
 
@@ -59,6 +60,24 @@ inline std::vector<Node> chain_of_leaves(uint leaves) {
     const Node first = nodes[pair], second = nodes[pair + 1];
     nodes[pair - 1] = {glm::min(first.box_min, second.box_min), static_cast<uint>(pair),
                        glm::max(first.box_max, second.box_max), second.height + 1};
+  }
+  return nodes;
+}
+
+// A chain of so many leaves, below which the tree stands.
+inline std::vector<Node> below_a_chain(std::span<const Node> tree, uint leaves) {
+  const uint moved = 2 * leaves;
+  std::vector<Node> nodes(moved + tree.size());
+  for (std::size_t i = 0; i < tree.size(); ++i) {
+    nodes[moved + i] = tree[i];
+    if (tree[i].height > 0) nodes[moved + i].child += moved;
+  }
+  const auto triangles = static_cast<uint>((tree.size() + 1) / 2);
+  for (uint leaf = leaves; leaf-- > 0;) {
+    const Node& below = nodes[2 * leaf + 2];
+    const vec3 corner = below.box_max + vec3(1);
+    nodes[2 * leaf + 1] = {corner, triangles + leaf, corner + 1.0f, 0};
+    nodes[2 * leaf] = {below.box_min, 2 * leaf + 1, corner + 1.0f, below.height + 1};
   }
   return nodes;
 }

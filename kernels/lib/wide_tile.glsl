@@ -1,0 +1,66 @@
+// The children of a tile of a level of the wide tree, which the including kernel's `args` tell.
+#include "lib/subgroup.glsl"
+#include "lib/wide_collapse.glsl"
+#include "lib/wide_groups.glsl"
+
+shared uint roots[WIDE_TILE * WIDE_CHILDREN];
+shared uint parents[WIDE_TILE * WIDE_CHILDREN];
+
+// This invocation's part of the sum over all tiles of the level before this one.
+uint part_of_sum_before(WideLevel level, uint tile) {
+  uint sum = 0u, block = tile / WIDE_BLOCK;
+  [[dont_unroll]] for (uint b = lane(); b < block; b += LANES) sum += args.block_sums.at[level.first_block + b];
+  [[dont_unroll]] for (uint t = block * WIDE_BLOCK + lane(); t < tile; t += LANES)
+    sum += args.tile_sums.at[level.first_tile + t];
+  return sum;
+}
+
+// Lists the roots of the children of entry `parent`, the first at `slot`.
+void list_children(uint parent, uint slot) {
+  [[dont_unroll]] for (uint c = 0u; c < WIDE_CHILDREN; ++c) {
+    uint child = args.children.at[parent * WIDE_CHILDREN + c];
+    if ((child & WIDE_LEAF) == 0u) {
+      roots[slot] = child;
+      parents[slot] = parent;
+      ++slot;
+    }
+  }
+}
+
+// Children before this tile in the level, and in the tile; they are in `roots` and `parents`.
+uvec2 list_tile(WideLevel level, uint tile) {
+  uint before = subgroupAdd(part_of_sum_before(level, tile)), listed = 0u;
+  uint first = tile * WIDE_TILE, last = min(first + WIDE_TILE, level.count);
+  [[dont_unroll]] for (uint at = first; at < last; at += LANES) {
+    uint parent = level.first + at + lane();
+    uint child_count = at + lane() < last ? args.entries.at[parent].child_count : 0u;
+    uint sums = inclusive_add(child_count), slot = listed + sums - child_count;
+    if (child_count != 0u) {
+      args.entries.at[parent].first_child = level.first + level.count + before + slot;
+      list_children(parent, slot);
+    }
+    listed += subgroupBroadcast(sums, LANES - 1u);
+  }
+  sync();
+  return uvec2(before, listed);
+}
+
+// Of the level with this index; the last tile writes the next level.
+void collapse_tile(uint index, WideLevel level, uint tile) {
+  uint tile_count = wide_tiles(level.count);
+  uvec2 sums = list_tile(level, tile);
+  uint next_first = level.first + level.count;
+  uint next_tile = level.first_tile + tile_count;
+  uint next_block = level.first_block + (tile_count + WIDE_BLOCK - 1u) / WIDE_BLOCK;
+  Node root = args.nodes.at[0];
+  Normalisation normalisation = normalisation_of(root.box_min, root.box_max);
+  [[dont_unroll]] for (uint i = lane(); i < sums.y; i += LANES)
+    enter(next_first + sums.x + i, roots[i], parents[i], sums.x + i, next_tile, next_block, normalisation);
+  if (tile + 1u != tile_count || lane() != 0u) return;
+  uint count = sums.x + sums.y;
+  args.levels.at[index + 1u] = planned_level(next_first, count, next_tile, next_block);
+  if (count == 0u) {
+    uvec3 groups = wide_rows((next_first + WIDE_GROUP - 1u) / WIDE_GROUP);
+    args.counts.at[0] = WideCounts(next_first, index + 1u, groups, 0u, 0u, 0u);
+  }
+}

@@ -1,0 +1,22 @@
+// In:  a level of the wide tree. Out: all levels behind it, as by wide_collapse. One subgroup takes them in turn, as few
+// trees have so many levels.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "interface/wide.h"
+
+layout(local_size_x_id = DEVICE_SUBGROUP_SIZE_ID) in;
+layout(push_constant, scalar) uniform Push { WideCollapseRestArgs args; };
+
+#include "lib/wide_tile.glsl"
+
+void main() {
+  [[dont_unroll]] for (uint index = args.level; index < args.level_limit; ++index) {
+    WideLevel level = args.levels.at[index];
+    uint tile_count = wide_tiles(level.count);
+    if (tile_count == 0u) return;
+    [[dont_unroll]] for (uint tile = 0u; tile < tile_count; ++tile) {
+      collapse_tile(index, level, tile);
+      sync_memory();
+    }
+  }
+}
