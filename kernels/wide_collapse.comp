@@ -14,5 +14,5 @@ layout(push_constant, scalar) uniform Push { WideCollapseArgs args; };
 void main() {
   WideLevel level = args.levels.at[args.level];
   uint tile = wide_group();
-  if (tile < wide_tiles(level.count)) collapse_tile(args.level, level, tile);
+  if (tile < wide_tiles(level.count)) collapse_tile(args.level, level, tile, sum_before(level, tile));
 }

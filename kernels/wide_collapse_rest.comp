@@ -14,8 +14,9 @@ void main() {
     WideLevel level = args.levels.at[index];
     uint tile_count = wide_tiles(level.count);
     if (tile_count == 0u) return;
+    uint before = 0u;
     [[dont_unroll]] for (uint tile = 0u; tile < tile_count; ++tile) {
-      collapse_tile(index, level, tile);
+      before = collapse_tile(index, level, tile, before);
       sync_memory();
     }
   }

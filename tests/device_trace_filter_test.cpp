@@ -46,5 +46,30 @@ TEST_F(TraceFilter, PacketsWithMasksAndCounts) {
   }
 }
 
+// By every tracer, beside an error of the tree's, and where no ray may come.
+TEST_F(TraceFilter, ACountBeyondTheMaximumIsNamed) {
+  const std::vector<Triangle> triangles = random_triangles(200, 3, 0.2f);
+  const Bvh bvh = build_ploc(triangles, {});
+  const std::vector<Ray> rays = hard_rays(RayKind::RANDOM, triangles, {}, 40, 4);
+  for (const std::size_t most : {std::size_t{0}, rays.size()}) {
+    for (const std::size_t beyond : {std::size_t{0}, std::size_t{1}}) {
+      const RaysToTrace input{.nodes = bvh.nodes,
+                              .triangles = triangles,
+                              .rays = std::span(rays).first(most),
+                              .count = static_cast<uint>(most + beyond)};
+      const uint expected = beyond > 0 ? ERROR_RAY_COUNT : 0u;
+      TraceOptions options = test_trace_options(1, 1);
+      for (const Walk walk : {Walk::binary, Walk::wide_packets, Walk::wide_single}) {
+        options.walk = walk;
+        EXPECT_EQ(trace_in_lockstep(input, options).error_word, expected) << name_of(walk) << ", " << most;
+      }
+      options.walk = Walk::binary;
+      EXPECT_EQ(candidates_in_lockstep(input, 2, options).error_word, expected) << most;
+      options.stack_entries = bvh.nodes[0].height - 1;
+      EXPECT_EQ(trace_in_lockstep(input, options).error_word, expected | ERROR_TREE_TOO_DEEP) << most;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace coppice

@@ -3,15 +3,12 @@
 
 #include <algorithm>
 
-#include "measure/copy_limit.h"
-#include "pipeline/batch.h"
-#include "pipeline/scan_plan.h"
+#include "pipeline/check_chain.h"
 #include "render/frame.h"
 #include "scene/hard_cases.h"
 #include "stages/cpu_executor.h"
 #include "stages/hazards.h"
 #include "stages/stages.h"
-#include "support/triangles.h"
 
 namespace coppice {
 namespace {
@@ -126,6 +123,20 @@ TEST_F(HazardsTest, WhatNobodyKnowsReachesToTheEnd) {
   EXPECT_EQ(barriers(), "||");
 }
 
+// Of a caller, who gives no guard behind his keys.
+TEST(AddressMap, AnArrayRightBehindAnother) {
+  Layout layout = Layout::apart(std::uint64_t{1} << 30);
+  const auto keys = layout.add<uint>("keys", 64, Memory::keys);
+  const auto values = layout.add<uint>("values", 128, Memory::values);
+  std::array<std::uint64_t, memory_kinds> addresses{};
+  addresses[keys.place.block] = 0x1000;
+  addresses[values.place.block] = 0x1100;
+  const AddressMap map(layout, addresses);
+  EXPECT_GE(map.end_of(0x1000), 0x1100u);
+  EXPECT_GE(map.end_of(0x1100), 0x1300u);
+  EXPECT_GE(map.end_of(0x11fc), 0x1300u);
+}
+
 TEST_F(HazardsTest, MoreThanFitAreKeptApart) {
   for (int i = 0; i < 200; ++i) chain.run(stages::copy_words, {chain.at(a), {}, 0, 0}, {1, 1, 1});
   const std::string found = barriers();
@@ -137,7 +148,7 @@ TEST_F(HazardsTest, MoreThanFitAreKeptApart) {
 
 struct ChainCase {
   const char* name;
-  std::optional<DeviceBuilder> builder{};
+  DeviceBuilder builder;
   bool lookback = true;
   Walk walk = Walk::binary;
 };
@@ -150,56 +161,17 @@ constexpr ChainCase chain_cases[] = {{"ploc", DeviceBuilder::ploc, true, Walk::b
                                      {"hploc_wide_single", DeviceBuilder::hploc, false, Walk::wide_single},
                                      {"lbvh", DeviceBuilder::lbvh, true, Walk::binary}};
 
-// A frame of 3,000 triangles with two samples a pixel.
-class FrameHazards : public testing::TestWithParam<ChainCase> {
- protected:
-  static SceneArrays frame_arrays() {
-    SceneArrays arrays = scene_arrays(find_hard_case("nested")->make(3000, 1));
-    arrays.lighting = {};
-    return arrays;
-  }
+// Memory after a chain, whose steps that may overlap are run in order or the other way round. For the stage
+// of its name `declared` is taken.
+struct OverlapRun {
+  bool reversed = false;
+  const StageDeclaration* declared = nullptr;
+  std::size_t left_out = 0;  // barriers
 
-  static FramePlan plan(Layout& layout, const SceneArrays& arrays) {
-    BuildOptions build;
-    build.builder = *GetParam().builder;
-    build.lookback = GetParam().lookback;
-    TraceOptions trace;
-    trace.width = 31;
-    trace.height = 23;
-    trace.samples = 2;
-    trace.walk = GetParam().walk;
-    return plan_frame(layout, arrays, {build, 0, trace});
-  }
-
-  const SceneArrays arrays = frame_arrays();
-  Layout layout;
-  const FramePlan frame = plan(layout, arrays);
-
-  void upload(CpuExecutor& executor) const {
-    const Scene scene = find_hard_case("nested")->make(3000, 1);
-    upload_frame(executor, frame.tree, frame.trace, arrays, make_film(scene, {}, 31, 23, 2));
-  }
-
-  std::vector<std::byte> memory(const CpuExecutor& executor) const {
-    std::vector<std::byte> bytes;
-    for (std::uint32_t block = 0; block < layout.block_bytes().size(); ++block) {
-      const std::byte* const first = executor.at({block, 0});
-      bytes.insert(bytes.end(), first, first + layout.block_bytes()[block]);
-    }
-    return bytes;
-  }
-
-  // Memory after the frame: steps that may overlap in the order of the chain or the other way round. For the
-  // stage of its name `declared` is taken.
-  std::vector<std::byte> memory_after(bool reversed, const StageDeclaration* declared = nullptr,
-                                      std::size_t* barriers_left_out = nullptr) const {
-    CpuExecutor executor(layout);
-    upload(executor);
-    Chain chain = executor.chain();
-    append_frame(chain, frame);
+  std::vector<std::byte> memory_after(CpuExecutor& executor, const Layout& layout, std::vector<Step> steps) {
     Hazards hazards(AddressMap(layout, executor.block_addresses()));
     std::vector<std::vector<Step>> groups;
-    for (Step& step : chain.steps()) {
+    for (Step& step : steps) {
       const StageDeclaration* const stage = stage_of(step);
       if (stage && declared && std::string_view(stage->name) == declared->name)
         dispatch_of(step)->stage = declared;
@@ -210,15 +182,47 @@ class FrameHazards : public testing::TestWithParam<ChainCase> {
       if (reversed) std::ranges::reverse(group);
       executor.run(group);
     }
-    if (barriers_left_out) *barriers_left_out = chain.steps().size() - groups.size();
-    return memory(executor);
+    left_out = steps.size() - groups.size();
+    std::vector<std::byte> bytes;
+    for (std::uint32_t block = 0; block < layout.block_bytes().size(); ++block) {
+      const std::byte* const first = executor.at({block, 0});
+      bytes.insert(bytes.end(), first, first + layout.block_bytes()[block]);
+    }
+    return bytes;
+  }
+};
+
+// A frame of 3,000 triangles with two samples a pixel.
+class FrameHazards : public testing::TestWithParam<ChainCase> {
+ protected:
+  static FramePlan plan(Layout& layout, const SceneArrays& arrays) {
+    BuildOptions build;
+    build.builder = GetParam().builder;
+    build.lookback = GetParam().lookback;
+    TraceOptions trace;
+    trace.width = 31;
+    trace.height = 23;
+    trace.samples = 2;
+    trace.walk = GetParam().walk;
+    return plan_frame(layout, arrays, {build, 0, trace});
+  }
+
+  const Scene scene = find_hard_case("nested")->make(3000, 1);
+  const SceneArrays arrays = scene_arrays(scene);
+  Layout layout;
+  const FramePlan frame = plan(layout, arrays);
+
+  std::vector<std::byte> memory_after(OverlapRun run) const {
+    CpuExecutor executor(layout);
+    upload_frame(executor, frame.tree, frame.trace, arrays, make_film(scene, {}, 31, 23, 2));
+    Chain chain = executor.chain();
+    append_frame(chain, frame);
+    return run.memory_after(executor, layout, chain.steps());
   }
 };
 
 TEST_P(FrameHazards, StepsThatMayOverlapMayBeRunInAnyOrder) {
-  std::size_t left_out = 0;
-  EXPECT_EQ(memory_after(false), memory_after(true, nullptr, &left_out));
-  EXPECT_GT(left_out, 0u);
+  EXPECT_TRUE(memory_after({.reversed = false}) == memory_after({.reversed = true}));
 }
 
 // A stage of which is said that it only reads: the picture is resolved before it is shaded.
@@ -227,11 +231,36 @@ TEST_P(FrameHazards, AFalseDeclarationIsSeen) {
   std::vector<AddressArg> addresses(faulty.addresses.begin(), faulty.addresses.end());
   for (AddressArg& address : addresses) address.written = false;
   faulty.addresses = addresses;
-  EXPECT_NE(memory_after(false), memory_after(true, &faulty));
+  EXPECT_FALSE(memory_after({.reversed = false}) == memory_after({.reversed = true, .declared = &faulty}));
 }
 
 INSTANTIATE_TEST_SUITE_P(Chains, FrameHazards, testing::ValuesIn(chain_cases),
                          [](const auto& info) { return std::string(info.param.name); });
+
+// All that the library does, as the self-check runs it.
+TEST(LibraryHazards, StepsThatMayOverlapMayBeRunInAnyOrder) {
+  DeviceProperties device{};
+  device.max_block_bytes = std::uint64_t{1} << 30;
+  for (const bool lookback : {true, false}) {
+    for (const Walk walk : {Walk::binary, Walk::wide_single}) {
+      DeviceUse use{.traces = {TraceOptions{.walk = walk}}};
+      use.wide = use.inputs = use.batches = use.sorts = use.sorts_values = use.scans = use.every_ray = true;
+      use.build.variants.sort = SORT_ONESWEEP_RUNS;
+      const CheckChain check = check_chain_of(device, use, lookback);
+      std::vector<std::byte> memory[2];
+      for (const bool reversed : {false, true}) {
+        CpuExecutor executor(check.layout());
+        check.upload_to(executor);
+        Chain chain = executor.chain();
+        check.append_to(chain);
+        OverlapRun run{.reversed = reversed};
+        memory[reversed] = run.memory_after(executor, check.layout(), chain.steps());
+        EXPECT_GT(run.left_out, 10u);
+      }
+      EXPECT_TRUE(memory[0] == memory[1]) << "lookback " << lookback << ", " << name_of(walk);
+    }
+  }
+}
 
 }  // namespace
 }  // namespace coppice

@@ -49,7 +49,8 @@ struct Builder::Plan {
 
 Builder::Builder(const Context& context, std::uint32_t max_primitives, const TreeOptions& options) {
   with_argument_errors([&] { check_build(max_primitives, to_build_options(options)); });
-  const BuildOptions checked = context.state().checked({.build = to_build_options(options), .inputs = true});
+  const BuildOptions checked =
+      context.state().checked({.build = to_build_options(options), .wide = options.wide, .inputs = true});
   plan_ = std::make_unique<Plan>(context.state().device(), max_primitives, checked, options.wide);
   // Numbers at which other kernels run, or others of their variants.
   for (const std::uint32_t count : {std::max(max_primitives, 1u), std::min(max_primitives, 1u << 18), 1u}) {

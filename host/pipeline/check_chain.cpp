@@ -21,6 +21,8 @@ constexpr std::uint32_t picture_edge = 16, other_rays = 64;
 constexpr std::uint32_t brute_force_rays = 64;
 constexpr std::uint32_t check_words = 3 * SCAN_TILE * 4 + 5;
 constexpr std::uint32_t batch_trees = 50;
+constexpr std::uint32_t chain_leaves = WIDE_MAX_HEIGHT + 1;
+static_assert(chain_leaves / WIDE_CHILDREN >= WIDE_DISPATCHED_LEVELS);
 constexpr double check_limit_seconds = 60;
 
 constexpr const char* wrong_tree = "computes a wrong tree";
@@ -57,6 +59,23 @@ std::vector<Triangle> scattered_triangles() {
   return triangles;
 }
 
+// A tree of boxes in a row: of the two children of a node the first is a leaf.
+std::vector<Node> chain_of_boxes() {
+  constexpr std::uint32_t last = chain_leaves - 1;
+  // All boxes from this one on.
+  const auto rest = [](std::uint32_t box) {
+    const auto first = static_cast<float>(box);
+    return Node{{first, 0, 0}, box == last ? box : 2 * box + 1, {chain_leaves, 1, 1}, last - box};
+  };
+  std::vector<Node> nodes = {rest(0)};
+  for (std::uint32_t box = 0; box < last; ++box) {
+    const auto first = static_cast<float>(box);
+    nodes.push_back({{first, 0, 0}, box, {first + 1, 1, 1}, 0});
+    nodes.push_back(rest(box + 1));
+  }
+  return nodes;
+}
+
 std::vector<Ray> check_rays() {
   constexpr float far = std::numeric_limits<float>::infinity();
   Random random;
@@ -76,15 +95,12 @@ std::vector<Ray> check_rays() {
 
 class Check {
  public:
-  Check(const Device& device, const DeviceUse& use, bool lookback)
-      : use_(use),
-        options_(use.build),
-        max_turns_(device.properties().max_turns()),
-        chain_(device.properties().max_block_bytes) {
+  Check(const DeviceProperties& device, const DeviceUse& use, bool lookback)
+      : use_(use), options_(use.build), max_turns_(device.max_turns()), chain_(device.max_block_bytes) {
     options_.lookback = lookback;
-    if (use.builds || !use.traces.empty()) add_tree();
+    if (use.builds || use.wide || !use.traces.empty()) add_tree();
     for (const TraceOptions& trace : use.traces) add_trace(trace);
-    chain_.compare(tree_.state, wrong_tree);
+    chain_.compare(tree_.state, "leaves another error word");
     if (use.inputs) add_inputs();
     if (use.batches) add_batch();
     if (use.sorts) add_sort();
@@ -109,10 +125,27 @@ class Check {
     }
     chain_.compare(build.nodes, wrong_tree);
     tree_ = build;
-    if (std::ranges::any_of(use_.traces, is_wide, &TraceOptions::walk)) {
-      const WidePlan wide = plan_wide(layout(), tree_, &build, max_turns_);
-      chain_.append([wide, tree = tree_](Chain& chain) { append_wide(chain, tree, wide); });
-    }
+    if (!use_.wide && !std::ranges::any_of(use_.traces, is_wide, &TraceOptions::walk)) return;
+    add_wide(tree_, plan_wide(layout(), tree_, &build, max_turns_));
+    add_deep_wide();
+  }
+
+  void add_wide(const TreeSlots& tree, const WidePlan& wide) {
+    chain_.append([=](Chain& chain) { append_wide(chain, tree, wide); });
+    chain_.compare(tree.wide_nodes, wrong_tree);
+    chain_.compare(tree.wide_counts, wrong_tree);
+  }
+
+  // Of more levels than have dispatches of their own.
+  void add_deep_wide() {
+    const std::vector<Node> nodes = chain_of_boxes();
+    BuildState state{};
+    state.active_count = chain_leaves;
+    TreeSlots tree = plan_tree(layout(), chain_leaves, nodes.size());
+    const WidePlan wide = plan_wide(layout(), tree, nullptr, max_turns_);
+    chain_.upload(tree.nodes, std::span(nodes));
+    chain_.upload(tree.state, std::span<const BuildState>(&state, 1));
+    add_wide(tree, wide);
   }
 
   void add_trace(const TraceOptions& options) {
@@ -194,6 +227,7 @@ class Check {
     chain_.append([=](Chain& chain) { append_batch(chain, batch); });
     chain_.compare(batch.nodes, wrong_tree);
     chain_.compare(batch.trees, wrong_tree);
+    chain_.compare(batch.state, wrong_tree);
   }
 
   void add_sort() {
@@ -225,7 +259,7 @@ class Check {
 
 }  // namespace
 
-CheckChain check_chain_of(const Device& device, const DeviceUse& use, bool lookback) {
+CheckChain check_chain_of(const DeviceProperties& device, const DeviceUse& use, bool lookback) {
   return Check(device, use, lookback).chain();
 }
 
@@ -236,16 +270,23 @@ bool CheckChain::same(const Device& device, const Compared& compared, std::span<
   return std::ranges::equal(by_twins, on_device);
 }
 
+void CheckChain::upload_to(CpuExecutor& executor) const {
+  for (const Upload& upload : uploads_) std::ranges::copy(upload.bytes, executor.at(upload.place));
+}
+
+void CheckChain::append_to(Chain& chain) const {
+  for (const Part& part : parts_) part.steps(chain);
+}
+
 const char* CheckChain::run(Device& device, const CheckFault& fault) const {
   CpuExecutor cpu(layout_);
   GpuExecutor gpu(device, layout_);
-  for (const Upload& upload : uploads_) {
-    std::ranges::copy(upload.bytes, cpu.at(upload.place));
+  upload_to(cpu);
+  for (const Upload& upload : uploads_)
     gpu.arena().upload(upload.place.block, upload.place.offset, upload.bytes);
-  }
   Chain by_twins = cpu.chain(), on_device = gpu.chain();
+  append_to(by_twins);
   for (const Part& part : parts_) {
-    part.steps(by_twins);
     if (part.on_device) part.steps(on_device);
   }
   cpu.run(by_twins.steps());

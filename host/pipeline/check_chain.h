@@ -18,6 +18,7 @@ class CheckChain {
   explicit CheckChain(std::uint64_t max_block_bytes) : layout_(max_block_bytes) {}
 
   Layout& layout() { return layout_; }
+  const Layout& layout() const { return layout_; }
 
   template <class T>
   void upload(const Slot<T>& slot, std::span<const T> values) {
@@ -48,6 +49,10 @@ class CheckChain {
   void compare(const Slot<T>& slot, const char* wrong, std::optional<Nearly> like = {}) {
     compared_.push_back({{slot.place, slot.bytes()}, wrong, like});
   }
+
+  // All of it, for the twins.
+  void upload_to(CpuExecutor& executor) const;
+  void append_to(Chain& chain) const;
 
   // The first thing that the device does wrong; null where it does nothing wrong.
   const char* run(Device& device, const CheckFault& fault) const;
@@ -82,6 +87,6 @@ class CheckChain {
 };
 
 // The chain of a use, for a small scene.
-CheckChain check_chain_of(const Device& device, const DeviceUse& use, bool lookback);
+CheckChain check_chain_of(const DeviceProperties& device, const DeviceUse& use, bool lookback);
 
 }  // namespace coppice

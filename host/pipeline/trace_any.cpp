@@ -35,13 +35,13 @@ void append_any_hits(Chain& chain, const TreeSlots& tree, const AnyHitSlots& slo
     chain.run(stages::trace_wide_any,
               {chain.at(tree.wide_nodes), chain.at(tree.wide_counts), nodes, triangles, rays, any_hits,
                counters, state, flags, masks, count_at, ray_count, filter.ray_mask},
-              groups_of(ray_count, TRACE_BLOCK), {options.max_turns, filter.masks()});
+              counted_groups(ray_count, TRACE_BLOCK, count_at), {options.max_turns, filter.masks()});
     return;
   }
   chain.run(stages::trace_any,
             {nodes, triangles, rays, any_hits, counters, state, flags, masks, count_at, ray_count,
              filter.ray_mask, options.stack_entries, options.triangle_test, options.box_test, 0},
-            groups_of(ray_count, TRACE_GROUP),
+            counted_groups(ray_count, TRACE_GROUP, count_at),
             {options.max_turns, options.visits_per_turn, options.stack_entries, options.triangle_test,
              options.box_test, filter.masks()});
 }
@@ -64,13 +64,14 @@ void append_candidates(Chain& chain, const TreeSlots& tree, const CandidateSlots
   check_fits(slots.candidates, candidates);
   check_fits(slots.candidate_counts, ray_count);
   const RayFilter& filter = slots.filter;
+  const auto count_at = address_or_null(chain, filter.count_at);
   chain.run(stages::trace_candidates,
             {chain.at(tree.nodes), chain.at(slots.rays), chain.at(slots.candidates),
              chain.at(slots.candidate_counts), chain.at(slots.counters), chain.at(tree.state),
              address_or_null(chain, filter.primitive_flags), address_or_null(chain, filter.ray_masks),
-             address_or_null(chain, filter.count_at), ray_count, filter.ray_mask, options.stack_entries,
-             slots.capacity},
-            groups_of(ray_count, TRACE_GROUP), {options.max_turns, options.stack_entries, filter.masks()});
+             count_at, ray_count, filter.ray_mask, options.stack_entries, slots.capacity},
+            counted_groups(ray_count, TRACE_GROUP, count_at),
+            {options.max_turns, options.stack_entries, filter.masks()});
 }
 
 }  // namespace coppice

@@ -32,7 +32,7 @@ void append_walk(Chain& chain, const TreeSlots& tree, const RaySlots& slots, con
         stages::trace_closest,
         {chain.at(tree.nodes), triangles, rays, hits, counters, chain.at(tree.state), flags, masks, count_at,
          range.count, filter.ray_mask, options.stack_entries, options.triangle_test, options.box_test, 0},
-        groups_of(range.count, TRACE_GROUP),
+        counted_groups(range.count, TRACE_GROUP, count_at),
         {options.max_turns, options.visits_per_turn, options.stack_entries, options.triangle_test,
          options.box_test, filter.masks()});
     return;
@@ -53,10 +53,10 @@ void append_walk(Chain& chain, const TreeSlots& tree, const RaySlots& slots, con
                            range.count,
                            filter.ray_mask};
   if (options.walk == Walk::wide_packets) {
-    chain.run(stages::trace_wide, args, groups_of(range.count, TRACE_PACKET),
+    chain.run(stages::trace_wide, args, counted_groups(range.count, TRACE_PACKET, count_at),
               {options.max_turns, filter.masks()});
   } else {
-    chain.run(stages::trace_wide_single, args, groups_of(range.count, TRACE_BLOCK),
+    chain.run(stages::trace_wide_single, args, counted_groups(range.count, TRACE_BLOCK, count_at),
               {options.max_turns, filter.masks()});
   }
 }

@@ -79,7 +79,7 @@ std::string line_of(const DeviceUse& use) {
     text << ";trace:" << name_of(trace.walk) << ':' << trace.max_turns << ':' << trace.visits_per_turn << ':'
          << trace.stack_entries << ':' << trace.triangle_test << ':' << trace.box_test;
   }
-  text << ";others:" << use.inputs << use.batches << use.sorts << use.sorts_values << use.scans
+  text << ";others:" << use.wide << use.inputs << use.batches << use.sorts << use.sorts_values << use.scans
        << use.every_ray;
   return text.str();
 }

@@ -10,6 +10,9 @@ namespace coppice {
 
 namespace {
 
+// Of a tree whose deep levels one subgroup takes: it would take too long for those of a larger one.
+constexpr std::uint32_t most_leaves_of_a_subgroup = 1u << 20;
+
 // Above a node of level k there are k nodes of WIDE_LEAST_CHILDREN children at least, one of them on its way.
 std::uint32_t bound_levels(std::uint32_t leaves) {
   if (leaves < 2) return leaves;
@@ -53,7 +56,9 @@ WidePlan plan_wide(Layout& layout, TreeSlots& tree, const BuildPlan* finished, s
   const auto leaves = static_cast<std::uint32_t>((tree.nodes.count + 1) / 2);
   const std::uint32_t bound = wide_nodes_bound(leaves);
   plan.levels_bound = bound_levels(leaves);
-  plan.dispatched_levels = max_turns == 0xffffffffu ? WIDE_DISPATCHED_LEVELS : WIDE_MAX_HEIGHT;
+  // Deep levels may have most of the nodes, as those of a fine mesh at the end of a chain.
+  const bool few = leaves <= most_leaves_of_a_subgroup && max_turns == 0xffffffffu;
+  plan.dispatched_levels = few ? WIDE_DISPATCHED_LEVELS : WIDE_MAX_HEIGHT;
   plan.levels = layout.add<WideLevel>("wide_levels", plan.levels_bound + 1);
   // Each level begins a tile and a block of its own.
   plan.tile_sums = layout.add<uint>("wide_tile_sums", divide_up(bound, WIDE_TILE) + plan.levels_bound);

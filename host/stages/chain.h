@@ -68,7 +68,7 @@ class StepSink {
 
 // A chain of stages, written once and run by any executor. It is resolved for one address space: the
 // device's, where kernels run on it, or the host's, where twins do. Each step sees what those before it
-// wrote; clears that follow each other are of different places.
+// wrote.
 class Chain {
  public:
   // The addresses must outlive it. Steps are kept, or given to the sink, which allocates nothing.

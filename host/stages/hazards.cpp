@@ -7,11 +7,15 @@ namespace coppice {
 
 std::uint64_t AddressMap::end_of(std::uint64_t address) const {
   const std::vector<std::uint64_t>& bytes = layout_.block_bytes();
+  std::uint64_t end = ~std::uint64_t{0}, least_offset = end;
   for (std::uint32_t block = 0; block < bytes.size(); ++block) {
     const std::uint64_t offset = address - block_addresses_[block];  // huge for what lies before the block
-    if (offset < bytes[block]) return address_of({block, layout_.end_of_slot({block, offset})});
+    if (offset >= bytes[block] || offset >= least_offset) continue;
+    // A caller's array may be shorter than its block by the guard, and another one begin there: the nearest.
+    least_offset = offset;
+    end = address_of({block, layout_.end_of_slot({block, offset})});
   }
-  return ~std::uint64_t{0};
+  return end;
 }
 
 Hazards::StepTouches Hazards::touches_of(const Step& step) const {

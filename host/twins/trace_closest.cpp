@@ -54,12 +54,12 @@ uint trace(const TraceClosestArgs& args, const TraceRay& ray, const Sight& sight
 void trace_closest(const TraceClosestArgs& args) {
   TraceCounters& counters = args.counters[0];
   const bool empty = args.state[0].active_count == 0;
+  note_ray_count(args.state[0], args.count_at, args.ray_count);
   if (!empty && args.nodes[0].height > args.stack_entries) {
     args.state[0].error_word |= ERROR_TREE_TOO_DEEP;
     return;
   }
   const uint ray_count = counted(args.count_at, args.ray_count);
-  note_ray_count(args.state[0], args.count_at, args.ray_count);
   for (uint i = 0; i < ray_count; ++i) {
     TraceRay ray(args.rays[i]);
     if (!empty && ray.is_sound) {

@@ -27,9 +27,12 @@ void list_children(uint parent, uint slot) {
   }
 }
 
-// Children before this tile in the level, and in the tile; they are in `roots` and `parents`.
-uvec2 list_tile(WideLevel level, uint tile) {
-  uint before = subgroupAdd(part_of_sum_before(level, tile)), listed = 0u;
+// Children of the level before this tile.
+uint sum_before(WideLevel level, uint tile) { return subgroupAdd(part_of_sum_before(level, tile)); }
+
+// Children in the tile; they are in `roots` and `parents`.
+uint list_tile(WideLevel level, uint tile, uint before) {
+  uint listed = 0u;
   uint first = tile * WIDE_TILE, last = min(first + WIDE_TILE, level.count);
   [[dont_unroll]] for (uint at = first; at < last; at += LANES) {
     uint parent = level.first + at + lane();
@@ -42,25 +45,25 @@ uvec2 list_tile(WideLevel level, uint tile) {
     listed += subgroupBroadcast(sums, LANES - 1u);
   }
   sync();
-  return uvec2(before, listed);
+  return listed;
 }
 
-// Of the level with this index; the last tile writes the next level.
-void collapse_tile(uint index, WideLevel level, uint tile) {
-  uint tile_count = wide_tiles(level.count);
-  uvec2 sums = list_tile(level, tile);
+// Of the level with this index, before whose tile come so many children; the last tile writes the next level. Returns the
+// children before the next tile.
+uint collapse_tile(uint index, WideLevel level, uint tile, uint before) {
+  uint tile_count = wide_tiles(level.count), listed = list_tile(level, tile, before), count = before + listed;
   uint next_first = level.first + level.count;
   uint next_tile = level.first_tile + tile_count;
   uint next_block = level.first_block + (tile_count + WIDE_BLOCK - 1u) / WIDE_BLOCK;
   Node root = args.nodes.at[0];
   Normalisation normalisation = normalisation_of(root.box_min, root.box_max);
-  [[dont_unroll]] for (uint i = lane(); i < sums.y; i += LANES)
-    enter(next_first + sums.x + i, roots[i], parents[i], sums.x + i, next_tile, next_block, normalisation);
-  if (tile + 1u != tile_count || lane() != 0u) return;
-  uint count = sums.x + sums.y;
+  [[dont_unroll]] for (uint i = lane(); i < listed; i += LANES)
+    enter(next_first + before + i, roots[i], parents[i], before + i, next_tile, next_block, normalisation);
+  if (tile + 1u != tile_count || lane() != 0u) return count;
   args.levels.at[index + 1u] = planned_level(next_first, count, next_tile, next_block);
   if (count == 0u) {
     uvec3 groups = wide_rows((next_first + WIDE_GROUP - 1u) / WIDE_GROUP);
     args.counts.at[0] = WideCounts(next_first, index + 1u, groups, 0u, 0u, 0u);
   }
+  return count;
 }
