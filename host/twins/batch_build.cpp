@@ -26,6 +26,7 @@ Address<T> offset(Address<T> array, std::size_t by) {
 
 // As a build of these primitives alone, step by step.
 BatchTree build_range(const BatchBuildArgs& args, const BatchRange& range) {
+  if (range.count == 0) return {0, 0, 0, 0};
   const Address<const Aabb> boxes = offset(args.boxes, range.first);
   std::vector<BuildState> state(1);
   for (uint i = 0; i < range.count; ++i) {
