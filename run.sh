@@ -27,7 +27,7 @@ picture_path() {
 }
 
 install_missing "${build_packages[@]}"
-build release "$build_dir" coppice
+build release "$build_dir" coppice coppice_installed # the library too, for cmake --install
 setup_driver
 
 coppice=$build_dir/coppice

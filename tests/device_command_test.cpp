@@ -114,8 +114,9 @@ TEST_F(Command, AHouseLooksTheSameWhereverItStands) {
 }
 
 TEST_F(Command, UnknownDeviceAndUnwritableOutputAreNamed) {
-  expect_refused("render one.obj -o out.png --device nonsense", 1, "nonsense");
   expect_refused("render one.obj -o out.png --device 99", 1, "99");
+  expect_refused("render one.obj -o out.png --device nonsense", 1, "--device: no device 'nonsense'");
+  expect_refused("compare one.obj --timeout nan", 2, "--timeout");
   expect_refused("render one.obj -o nowhere/out.png", 1, "nowhere/out.png");
   expect_refused("build one.obj --json nowhere/report.json", 1, "nowhere/report.json");
 }

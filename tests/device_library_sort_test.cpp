@@ -146,6 +146,12 @@ TEST_F(LibraryErrors, BadArgumentsAreNamedAndNothingIsRecorded) {
   EXPECT_EQ(message(good, {VK_NULL_HANDLE, 0, sizes.tree_bytes}, range_of(scratch)),
             "tree: the buffer is null");
   EXPECT_NE(message(good, range_of(tree), {scratch.buffer, 0, 16}).find("scratch: "), std::string::npos);
+  EXPECT_EQ(message(good, range_of(scratch), range_of(scratch)),
+            "scratch: it overlaps other memory of the call");
+  KernelQueries no_pool{.capacity = 5};
+  EXPECT_EQ(thrown_by<ArgumentError>(
+                [&] { builder.cmd_build(commands, good, range_of(tree), range_of(scratch), &no_pool); }),
+            "queries: the pool is null");
   own().run(commands);
   EXPECT_TRUE(std::ranges::all_of(tree.as<std::uint8_t>(), [](std::uint8_t byte) { return byte == 0; }));
 
@@ -168,6 +174,11 @@ TEST_F(LibraryErrors, BadArgumentsAreNamedAndNothingIsRecorded) {
               Sorter(context(), 10, {3, true});
             }).find("key_words"),
             std::string::npos);
+  const Sorter of_keys(context(), 10, {1, false});
+  EXPECT_EQ(thrown_by<ArgumentError>([&] {
+              of_keys.cmd_sort(commands, triangles.address, tree.address, {10}, range_of(scratch));
+            }),
+            "values: this sorter sorts keys alone");
 }
 
 // Memory around what was given stays as it is, whatever a call does in it.

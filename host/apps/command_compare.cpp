@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -33,6 +35,9 @@ class CompareCommand : public Command {
     add_size(app, picture_);
     app.add_option("--timeout", timeout_seconds_, "seconds a row may take")
         ->check(CLI::Range(0.1, 86400.0))
+        ->check([](const std::string& text) {  // which any range lets pass
+          return std::isnan(std::strtod(text.c_str(), nullptr)) ? "not a number" : std::string();
+        })
         ->capture_default_str();
     app.add_option("--markdown", files.markdown, "write the tables to FILE")->type_name("FILE");
     app.add_option("--plot", files.plot, "write build time against frame time as SVG")->type_name("FILE");

@@ -9,6 +9,7 @@
 
 #include "apps/command_line.h"
 #include "apps/heap.h"
+#include "gpu/device.h"
 #include "measure/progress.h"
 #include "pipeline/interruption.h"
 
@@ -45,6 +46,8 @@ int main(int argc, char** argv) {
     return 128 + interrupted.signal;  // as shells say it
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "coppice: out of memory\n");
+  } catch (const coppice::NoSuchDevice& error) {
+    std::fprintf(stderr, "coppice: --device: %s (see 'coppice devices')\n", error.what());
   } catch (const std::exception& error) {
     std::fprintf(stderr, "coppice: %s\n", error.what());
   }

@@ -27,6 +27,11 @@ struct DeviceListing {
 // driver.
 std::vector<DeviceListing> list_devices();
 
+// No device's name or index is as DeviceOptions::select says.
+struct NoSuchDevice : DeviceError {
+  using DeviceError::DeviceError;
+};
+
 struct DeviceOptions {
   std::string select;     // part of a name or an index; empty: discrete before integrated before CPU
   bool validate = false;  // validation layers, synchronization validation included

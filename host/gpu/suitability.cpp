@@ -160,7 +160,7 @@ std::uint32_t choose_device(const std::vector<DeviceListing>& devices, const std
   }
   if (best) return best->index;
   if (!reason.empty()) throw DeviceError("unsuitable device: " + reason);
-  throw DeviceError("--device: no device '" + select + "' (see 'coppice devices')");
+  throw NoSuchDevice("no device '" + select + "'");
 }
 
 }  // namespace coppice

@@ -37,6 +37,12 @@ void CallMemory::set(Memory memory, const MemoryRange& range, std::uint64_t byte
   const auto index = static_cast<std::size_t>(memory);
   addresses_[index] = checked_address(device_, range, bytes, what);
   blocks_[index] = {range.buffer, range.offset};
+  bytes_[index] = bytes;
+  for (std::size_t other = 0; other < memory_kinds; ++other) {
+    if (other != index && addresses_[index] < addresses_[other] + bytes_[other] &&
+        addresses_[other] < addresses_[index] + bytes)
+      fail(what, ": it overlaps other memory of the call");
+  }
 }
 
 void CallMemory::set(Memory memory, VkDeviceAddress address, std::uint64_t bytes, std::uint64_t alignment,
@@ -51,6 +57,7 @@ CommandSink::CommandSink(Device& device, VkCommandBuffer commands, const Layout&
       hazards_(AddressMap(layout, memory.addresses()),
                queries ? Hazards::Overlap::clears : Hazards::Overlap::steps),
       queries_(queries) {
+  if (queries_ && queries_->capacity > 0 && !queries_->pool) fail("queries", ": the pool is null");
   if (queries_) queries_->written = 0;
   stamp("begin");
 }

@@ -43,6 +43,8 @@ VkDeviceAddress Sorter::state_address(const MemoryRange& scratch) const {
 void Sorter::cmd_sort(VkCommandBuffer commands, VkDeviceAddress keys, VkDeviceAddress values,
                       const ElementCount& count, const MemoryRange& scratch, KernelQueries* queries) const {
   check_count(count, plan_->sort.triangle_count, "count");
+  if (values != 0 && plan_->sort.values[0].count == 0)
+    throw ArgumentError("values: this sorter sorts keys alone");
   CallMemory memory(plan_->device);
   memory.set(Memory::scratch, scratch, scratch_bytes(), "scratch");
   memory.set(Memory::keys, keys, plan_->sort.keys[0].bytes(), 16, "keys");

@@ -40,7 +40,7 @@ class CallMemory {
   explicit CallMemory(const Device& device) : device_(device) {}
 
   // Throws ArgumentError, with `what`, for a null buffer, fewer than `bytes`, or an address that is no
-  // multiple of COPPICE_MEMORY_ALIGNMENT.
+  // multiple of COPPICE_MEMORY_ALIGNMENT, or memory of another range of the call.
   void set(Memory memory, const MemoryRange& range, std::uint64_t bytes, const char* what);
   // Only read and written by kernels. Throws ArgumentError for null, unless there are no bytes, or
   // misaligned.
@@ -63,6 +63,7 @@ class CallMemory {
   static constexpr std::size_t most_blocks = memory_kinds + 16;
   std::array<std::uint64_t, most_blocks> addresses_{};
   std::array<BlockMemory, most_blocks> blocks_{};
+  std::array<std::uint64_t, memory_kinds> bytes_{};  // of ranges
   std::uint32_t used_ = memory_kinds;
 };
 

@@ -107,7 +107,8 @@ struct BatchAddresses {
   VkDeviceAddress triangles = 0;  // CoppiceTriangle, all of them; null for boxes
   VkDeviceAddress state = 0;  // CoppiceTreeState: error_word has the bits of all trees, primitive_count is
                               // the number of ranges
-  VkDeviceAddress input_state = 0;  // CoppiceTreeState of the primitives: whether there were too many
+  VkDeviceAddress input_state = 0;  // CoppiceTreeState of the primitives: whether there were too many, of
+                                    // which those beyond the maximum are in no tree
 };
 
 // Many small trees in one go: a dispatch for all. Each has at most COPPICE_BATCH_MAX_PRIMITIVES primitives

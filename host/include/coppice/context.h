@@ -133,8 +133,8 @@ struct MemoryRange {
 };
 
 // A number that is known when the device gets there: a word, of which at most `maximum` count. With a null
-// address it is `maximum`. A larger word counts as none in builds, as `maximum` elsewhere; it sets
-// COPPICE_ERROR_COUNT, or of rays COPPICE_ERROR_RAY_COUNT.
+// address it is `maximum`. A larger word counts as none in a Builder's builds, as `maximum` elsewhere; it
+// sets COPPICE_ERROR_COUNT, or of rays COPPICE_ERROR_RAY_COUNT.
 struct ElementCount {
   std::uint32_t maximum = 0;
   VkDeviceAddress address = 0;  // a multiple of 4

@@ -18,8 +18,7 @@ inline constexpr std::uint32_t MAX_RAYS = 65535 * 64;
 
 struct RayInput {
   VkDeviceAddress rays = 0;  // CoppiceRay; a multiple of 16
-  ElementCount
-      count{};  // at most MAX_RAYS; a larger word on the device counts as the maximum, without an error
+  ElementCount count{};      // at most MAX_RAYS
   // A ray sees a primitive where their masks have a bit in common.
   std::uint32_t ray_mask = 0xff;  // of all rays
   VkDeviceAddress ray_masks = 0;  // a word a ray, combined with ray_mask by and; a multiple of 4; null: none
@@ -28,7 +27,7 @@ struct RayInput {
 };
 
 // Traces of trees of any size; one can be used by several threads at once. What goes wrong sets bits of the
-// error word in the tree's state.
+// error word in the tree's state; they stay there until the tree is built anew or you clear them.
 class COPPICE_API Tracer {
  public:
   // Compiles the kernels that are not yet compiled, and lets the device be checked; throws DeviceError for
@@ -39,9 +38,9 @@ class COPPICE_API Tracer {
 
   VkDeviceSize scratch_bytes() const;  // of each call, which leaves its counters there
 
-  // The closest hit of each ray to `hits`: CoppiceHit each; a multiple of 16. Of a tree over boxes there are
-  // none. All throw ArgumentError, and record nothing, where an address is null or misaligned, the scratch is
-  // too small, or the tree does not have what is to be walked.
+  // The closest hit of each ray to `hits`: CoppiceHit each; a multiple of 16. All throw
+  // ArgumentError, and record nothing, where an address is null or misaligned, the scratch is too small, or
+  // the tree does not have what is to be walked: of a tree over boxes only candidates are found.
   void cmd_trace_closest(VkCommandBuffer commands, const TreeAddresses& tree, const RayInput& rays,
                          VkDeviceAddress hits, const MemoryRange& scratch,
                          KernelQueries* queries = nullptr) const;
