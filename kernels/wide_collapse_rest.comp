@@ -1,5 +1,5 @@
-// In:  a level of the wide tree. Out: all levels behind it, as by wide_collapse. One subgroup takes them in turn, as few
-// trees have so many levels.
+// In:  a level of the wide tree. Out: all levels behind it, as by wide_collapse. One subgroup takes them in turn: a
+// dispatch for each would be recorded for all trees, of which few have so many.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/wide.h"

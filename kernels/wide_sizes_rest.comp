@@ -1,5 +1,5 @@
-// In:  all levels of the wide tree. Out: sizes and offsets, as by wide_sizes, of the levels from one on. One subgroup takes
-// them in turn, the last one first.
+// In:  all levels of the wide tree. Out: sizes and offsets, as by wide_sizes, of the levels from one on. One subgroup
+// takes them in turn, the last one first.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/wide.h"

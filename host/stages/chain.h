@@ -74,7 +74,7 @@ class Chain {
   // The addresses must outlive it. Steps are kept, or given to the sink, which allocates nothing.
   explicit Chain(std::span<const std::uint64_t> block_addresses, StepSink* sink = nullptr)
       : block_addresses_(block_addresses), sink_(sink) {}
-  explicit Chain(std::vector<std::uint64_t>&&, StepSink* = nullptr) = delete;
+  explicit Chain(std::vector<std::uint64_t>&&, StepSink* = nullptr) = delete;  // would be gone
 
   template <class T>
   Address<T> at(const Slot<T>& slot, std::uint64_t first = 0) const {

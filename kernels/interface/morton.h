@@ -10,7 +10,7 @@ const uint MORTON_INACTIVE = 0xffffffffu;  // every key word of an inactive tria
 
 struct MortonCodesArgs {
   READS(AabbBuffer) boxes;        // triangle_count
-  READS(BuildStateBuffer) state;  // scene box, read
+  READS(BuildStateBuffer) state;  // scene box
   UintBuffer keys;                // triangle_count * key_words, low word first
   UintBuffer values;              // triangle_count: triangle indices
   READS(UintBuffer) count_at;     // null, or how many of them count

@@ -45,7 +45,7 @@ struct PlocLeavesArgs {
   READS(AabbBuffer) boxes;        // triangle_count
   READS(UintBuffer) values;       // triangle indices in Morton order, active ones first
   NodeBuffer clusters;            // active_count leaves, in Morton order
-  READS(BuildStateBuffer) state;  // active_count, read
+  READS(BuildStateBuffer) state;  // active_count
   PlocRoundBuffer rounds;         // the first one is written
   uint triangle_count;
   uint padding;

@@ -48,8 +48,8 @@ uint list_tile(WideLevel level, uint tile, uint before) {
   return listed;
 }
 
-// Of the level with this index, before whose tile come so many children; the last tile writes the next level. Returns the
-// children before the next tile.
+// Of the level with this index; `before` children come before this tile, and as many as it returns before the next one.
+// The last tile writes the next level.
 uint collapse_tile(uint index, WideLevel level, uint tile, uint before) {
   uint tile_count = wide_tiles(level.count), listed = list_tile(level, tile, before), count = before + listed;
   uint next_first = level.first + level.count;

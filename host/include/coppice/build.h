@@ -82,8 +82,8 @@ class COPPICE_API Builder {
   BuildSizes sizes() const;
 
   // The tree's memory and the scratch are overwritten. Throw ArgumentError, and record nothing, where the
-  // count is larger than max_primitives, or memory is too small or misaligned. `scratch` may be shared with
-  // other calls of the same command buffer.
+  // count is larger than max_primitives, memory is too small or misaligned, tree and scratch overlap, or
+  // queries have no pool. `scratch` may be shared with other calls of the same command buffer.
   void cmd_build(VkCommandBuffer commands, const TriangleInput& input, const MemoryRange& tree,
                  const MemoryRange& scratch, KernelQueries* queries = nullptr) const;
   void cmd_build(VkCommandBuffer commands, const BoxInput& input, const MemoryRange& tree,

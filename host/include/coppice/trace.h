@@ -38,9 +38,9 @@ class COPPICE_API Tracer {
 
   VkDeviceSize scratch_bytes() const;  // of each call, which leaves its counters there
 
-  // The closest hit of each ray to `hits`: CoppiceHit each; a multiple of 16. All throw
-  // ArgumentError, and record nothing, where an address is null or misaligned, the scratch is too small, or
-  // the tree does not have what is to be walked: of a tree over boxes only candidates are found.
+  // The closest hit of each ray to `hits`: CoppiceHit each; a multiple of 16. All throw ArgumentError, and
+  // record nothing, where an address is null or misaligned, the scratch is too small, or the tree does not
+  // have what is to be walked: of a tree over boxes only candidates are found.
   void cmd_trace_closest(VkCommandBuffer commands, const TreeAddresses& tree, const RayInput& rays,
                          VkDeviceAddress hits, const MemoryRange& scratch,
                          KernelQueries* queries = nullptr) const;
