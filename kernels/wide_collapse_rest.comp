@@ -10,6 +10,7 @@ layout(push_constant, scalar) uniform Push { WideCollapseRestArgs args; };
 #include "lib/wide_tile.glsl"
 
 void main() {
+  if (wide_group() != 0u) return;
   [[dont_unroll]] for (uint index = args.level; index < args.level_limit; ++index) {
     WideLevel level = args.levels.at[index];
     uint tile_count = wide_tiles(level.count);

@@ -106,20 +106,21 @@ void append_wide(Chain& chain, const TreeSlots& tree, const WidePlan& plan) {
   for (; collapse.level < dispatched; ++collapse.level)
     chain.run_indirect(stages::wide_collapse, collapse, indirect_groups_of(collapse.level));
   if (dispatched < plan.levels_bound) {
-    chain.run(stages::wide_collapse_rest,
-              {collapse.nodes,
-               {entries.value},
-               {children.value},
-               collapse.tile_sums,
-               collapse.block_sums,
-               {levels.value},
-               counts,
-               collapse.state,
-               dispatched,
-               plan.levels_bound},
-              {1, 1, 1});
-    chain.run(stages::wide_sizes_rest,
-              {entries, {sizes.value}, offsets, levels, dispatched, plan.levels_bound}, {1, 1, 1});
+    const Place groups = indirect_groups_of(dispatched);  // none in most trees; of more only one works
+    chain.run_indirect(stages::wide_collapse_rest,
+                       {collapse.nodes,
+                        {entries.value},
+                        {children.value},
+                        collapse.tile_sums,
+                        collapse.block_sums,
+                        {levels.value},
+                        counts,
+                        collapse.state,
+                        dispatched,
+                        plan.levels_bound},
+                       groups);
+    chain.run_indirect(stages::wide_sizes_rest,
+                       {entries, {sizes.value}, offsets, levels, dispatched, plan.levels_bound}, groups);
   }
   for (std::uint32_t level = dispatched; level-- > 0;)
     chain.run_indirect(stages::wide_sizes, {entries, sizes, offsets, levels, level, 0},
