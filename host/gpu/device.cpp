@@ -32,7 +32,10 @@ vk::raii::Instance make_instance(const vk::raii::Context& loader, bool validate)
   std::vector<const char*> layers, extensions;
   const vk::ValidationFeatureEnableEXT enabled[] = {
       vk::ValidationFeatureEnableEXT::eSynchronizationValidation};
-  const vk::ValidationFeaturesEXT features(enabled);
+  // The layer's cache is one file for all processes, which it writes in place while others read it.
+  const vk::ValidationFeatureDisableEXT disabled[] = {
+      vk::ValidationFeatureDisableEXT::eShaderValidationCache};
+  const vk::ValidationFeaturesEXT features(enabled, disabled);
   vk::InstanceCreateInfo info({}, &application);
   if (validate) {
     const auto available = loader.enumerateInstanceLayerProperties();

@@ -193,6 +193,10 @@ class OwnDevice {
     auto validation = structure<VkValidationFeaturesEXT>(VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT);
     validation.enabledValidationFeatureCount = 1;
     validation.pEnabledValidationFeatures = &enabled;
+    // One file for all processes, which the layer writes in place while others read it.
+    const VkValidationFeatureDisableEXT disabled = VK_VALIDATION_FEATURE_DISABLE_SHADER_VALIDATION_CACHE_EXT;
+    validation.disabledValidationFeatureCount = 1;
+    validation.pDisabledValidationFeatures = &disabled;
     auto info = structure<VkInstanceCreateInfo>(VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO);
     info.pApplicationInfo = &application;
     if (validate) {
