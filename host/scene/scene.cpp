@@ -5,6 +5,7 @@
 #include <glm/matrix.hpp>
 
 #include "scene/bounds.h"
+#include "scene/motion.h"
 
 namespace coppice {
 namespace {
@@ -24,6 +25,13 @@ glm::mat3 turn_of(std::string_view up) {
 
 glm::dvec3 scaled(glm::dvec3 point, int exponent) {
   return {std::ldexp(point.x, exponent), std::ldexp(point.y, exponent), std::ldexp(point.z, exponent)};
+}
+
+void move_to_scene(Scene& scene, const glm::dmat4& step) {
+  if (!scene.motion) return;
+  const auto motion = std::make_shared<Motion>(*scene.motion);
+  motion->to_scene = step * motion->to_scene;
+  scene.motion = motion;
 }
 
 }  // namespace
@@ -47,6 +55,8 @@ void bring_into_range(Scene& scene) {
     }
   }
   scene.scale_exponent += exponent;
+  const double factor = std::ldexp(1.0, exponent);
+  move_to_scene(scene, glm::dmat4(glm::dmat3(factor)));
 }
 
 void stand_up(Scene& scene, std::string_view up) {
@@ -54,6 +64,7 @@ void stand_up(Scene& scene, std::string_view up) {
   const glm::mat3 turn = turn_of(up);
   for (glm::vec3& position : scene.positions) position = turn * position;
   scene.turn = turn * scene.turn;
+  move_to_scene(scene, glm::dmat4(glm::dmat3(turn)));
   scene.camera.reset();
 }
 

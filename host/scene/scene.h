@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -41,6 +42,8 @@ struct Camera {
   float vertical_fov_degrees = 40.0f;
 };
 
+struct Motion;  // scene/motion.h
+
 // An indexed triangle mesh with what it takes to light and see it. +y is up; the unit of length is the
 // scene's own. Coordinates may be non-finite: a triangle with such a vertex is inactive, kept here and left
 // out of every tree.
@@ -56,8 +59,9 @@ struct Scene {
   std::vector<Material> materials = {Material{}};  // never empty
   std::optional<Camera> camera;                    // absent: frame_scene chooses one
   DirectionalLight light;
-  glm::vec3 ambient_light{0.35f};     // linear RGB, multiplies Material::diffuse
-  std::vector<std::string> warnings;  // one line each, what was odd about the input but not fatal
+  glm::vec3 ambient_light{0.35f};        // linear RGB, multiplies Material::diffuse
+  std::shared_ptr<const Motion> motion;  // null: nothing moves
+  std::vector<std::string> warnings;     // one line each, what was odd about the input but not fatal
 };
 
 // Number of triangles with at least one non-finite vertex coordinate.
