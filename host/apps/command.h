@@ -51,6 +51,7 @@ std::unique_ptr<Command> make_compare();
 std::unique_ptr<Command> make_stability();
 std::unique_ptr<Command> make_bench();
 std::unique_ptr<Command> make_tune();
+std::unique_ptr<Command> make_animate();
 std::unique_ptr<Command> make_scenes();
 std::unique_ptr<Command> make_devices();
 

@@ -20,6 +20,7 @@ constexpr NamedCommand commands[] = {
     {"stability", "hard cases and hard rays, with every intersection test", make_stability},
     {"bench", "times of sort, scan, PLOC, build or trace, results checked first", make_bench},
     {"tune", "measure the variants of stages on this device, and keep the fastest", make_tune},
+    {"animate", "rebuild every frame; frame times, pictures, a video", make_animate},
     {"scenes", "the built-in scenes", make_scenes},
     {"devices", "the Vulkan devices", make_devices},
 };

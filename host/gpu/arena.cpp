@@ -67,7 +67,7 @@ void check_range(const Buffer& block, std::uint64_t offset, std::uint64_t bytes,
 
 }  // namespace
 
-Arena::Arena(Device& device, const std::vector<std::uint64_t>& block_bytes)
+Arena::Arena(Device& device, const std::vector<std::uint64_t>& block_bytes, const std::vector<bool>& mapped)
     : blocks_(std::make_unique<Blocks>()) {
   using Usage = vk::BufferUsageFlagBits;
   using Memory = vk::MemoryPropertyFlagBits;
@@ -75,12 +75,14 @@ Arena::Arena(Device& device, const std::vector<std::uint64_t>& block_bytes)
   blocks_->context = &context;
   const auto host = Memory::eHostVisible | Memory::eHostCoherent;
   const bool shared = context.properties.shared_memory;
-  for (const std::uint64_t bytes : block_bytes) {
+  for (std::size_t block = 0; block < block_bytes.size(); ++block) {
+    const std::uint64_t bytes = block_bytes[block];
+    const bool maps = shared || (block < mapped.size() && mapped[block]);
     const auto usage = Usage::eStorageBuffer | Usage::eShaderDeviceAddress | Usage::eIndirectBuffer |
                        Usage::eTransferSrc | Usage::eTransferDst;
-    blocks_->list.push_back(make_buffer(context, bytes, usage, shared ? host : Memory::eDeviceLocal));
+    blocks_->list.push_back(make_buffer(context, bytes, usage, maps ? host : Memory::eDeviceLocal));
     addresses_.push_back(blocks_->list.back().address);
-    if (shared) std::memset(blocks_->list.back().mapped, 0, bytes);
+    if (maps) std::memset(blocks_->list.back().mapped, 0, bytes);
   }
   if (context.properties.type == DeviceType::cpu)
     check_address_space(reserve_bytes, "beside " +
@@ -90,11 +92,14 @@ Arena::Arena(Device& device, const std::vector<std::uint64_t>& block_bytes)
   if (shared) return;
   blocks_->staging = make_buffer(context, staging_bytes, Usage::eTransferSrc | Usage::eTransferDst, host);
   run_commands(context, [&](const vk::raii::CommandBuffer& commands) {
-    for (const Buffer& block : blocks_->list) commands.fillBuffer(*block.buffer, 0, VK_WHOLE_SIZE, 0);
+    for (const Buffer& block : blocks_->list)
+      if (!block.mapped) commands.fillBuffer(*block.buffer, 0, VK_WHOLE_SIZE, 0);
   });
 }
 
 Arena::~Arena() { free_unless_hung(*blocks_->context, blocks_); }
+
+std::byte* Arena::mapped(std::uint32_t block) const { return blocks_->list.at(block).mapped; }
 
 void Arena::upload(std::uint32_t block, std::uint64_t offset, std::span<const std::byte> bytes) {
   const Buffer& target = blocks_->list.at(block);

@@ -38,7 +38,7 @@ itimerval timer_of(double seconds) {
 // Between fork and exec, so only calls that are safe after a fork of a process with threads. Timer,
 // parent-death signal and group stay with the program that exec starts; a blocked or ignored SIGALRM would,
 // too.
-[[noreturn]] void become_child(char* const* argv, pid_t parent, int output, int errors,
+[[noreturn]] void become_child(const char* file, char* const* argv, pid_t parent, int output, int errors,
                                const itimerval& timer) {
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -49,12 +49,14 @@ itimerval timer_of(double seconds) {
   sigaddset(&alarm_only, SIGALRM);
   sigprocmask(SIG_UNBLOCK, &alarm_only, nullptr);
   setitimer(ITIMER_REAL, &timer, nullptr);
-  if (dup2(output, STDOUT_FILENO) >= 0 && dup2(errors, STDERR_FILENO) >= 0) execv("/proc/self/exe", argv);
+  if (dup2(output, STDOUT_FILENO) >= 0 && dup2(errors, STDERR_FILENO) >= 0) execvp(file, argv);
   _exit(could_not_start);
 }
 
-pid_t start_self(const std::vector<std::string>& arguments, int output, int errors, double limit_seconds) {
-  std::vector<std::string> words = {"coppice"};
+// `file`: a path, or a name that is looked for in PATH.
+pid_t start_child(const char* file, const std::string& name, const std::vector<std::string>& arguments,
+                  int output, int errors, double limit_seconds) {
+  std::vector<std::string> words = {name};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
@@ -62,7 +64,7 @@ pid_t start_self(const std::vector<std::string>& arguments, int output, int erro
   const itimerval timer = timer_of(limit_seconds);
   const pid_t parent = getpid();
   const pid_t child = fork();
-  if (child == 0) become_child(argv.data(), parent, output, errors, timer);
+  if (child == 0) become_child(file, argv.data(), parent, output, errors, timer);
   if (child < 0)
     throw std::runtime_error(std::string("cannot start a child process: ") + std::strerror(errno));
   setpgid(child, child);  // here too: whoever comes first
@@ -120,9 +122,8 @@ void reap(pid_t child, ChildResult& result) {
   }
 }
 
-}  // namespace
-
-ChildResult run_self(const std::vector<std::string>& arguments, double limit_seconds) {
+ChildResult run_child(const char* file, const std::string& name, const std::vector<std::string>& arguments,
+                      double limit_seconds) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> errors(std::tmpfile(), std::fclose);
   if (!errors) throw std::runtime_error("cannot open a temporary file");
   int ends[2];
@@ -130,7 +131,7 @@ ChildResult run_self(const std::vector<std::string>& arguments, double limit_sec
   ChildResult result;
   pid_t child = 0;
   try {
-    child = start_self(arguments, ends[1], fileno(errors.get()), limit_seconds);
+    child = start_child(file, name, arguments, ends[1], fileno(errors.get()), limit_seconds);
   } catch (...) {
     close(ends[0]);
     close(ends[1]);
@@ -142,7 +143,19 @@ ChildResult run_self(const std::vector<std::string>& arguments, double limit_sec
   if (result.timed_out) kill(-child, SIGKILL);
   reap(child, result);
   read_errors(errors.get(), result);
+  result.could_not_start = result.exit_status == could_not_start;
   return result;
+}
+
+}  // namespace
+
+ChildResult run_self(const std::vector<std::string>& arguments, double limit_seconds) {
+  return run_child("/proc/self/exe", "coppice", arguments, limit_seconds);
+}
+
+ChildResult run_program(const std::string& name, const std::vector<std::string>& arguments,
+                        double limit_seconds) {
+  return run_child(name.c_str(), name, arguments, limit_seconds);
 }
 
 }  // namespace coppice

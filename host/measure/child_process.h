@@ -7,6 +7,7 @@ namespace coppice {
 
 struct ChildResult {
   bool timed_out = false;
+  bool could_not_start = false;
   int exit_status = 0;             // -1: ended by a signal
   std::string output;              // what it wrote to stdout
   std::string error;               // the last line it wrote to stderr, or the signal that ended it
@@ -18,5 +19,9 @@ struct ChildResult {
 // process group of its own, which ends with it.
 // Throws std::runtime_error if it cannot be started.
 ChildResult run_self(const std::vector<std::string>& arguments, double limit_seconds);
+
+// The same with another program, which is looked for in PATH.
+ChildResult run_program(const std::string& name, const std::vector<std::string>& arguments,
+                        double limit_seconds);
 
 }  // namespace coppice

@@ -16,9 +16,9 @@ View choose_view(const Scene& scene, std::span<const double> given, std::uint32_
   return view_of(frame_scene(scene, static_cast<float>(width) / static_cast<float>(height)));
 }
 
-Film make_film(const Scene& scene, std::span<const double> given, std::uint32_t width, std::uint32_t height,
-               std::uint32_t samples) {
-  const View view = choose_view(scene, given, width, height);
+namespace {
+
+Film film_of(const View& view, std::uint32_t width, std::uint32_t height, std::uint32_t samples) {
   const double half_height = std::tan(glm::radians(view.vertical_fov_degrees) / 2);
   const double half_width = half_height * width / height;
   Film film{};
@@ -30,6 +30,17 @@ Film make_film(const Scene& scene, std::span<const double> given, std::uint32_t 
   film.right = view.right * (2 * half_width / width);
   film.down = view.down * (2 * half_height / height);
   return film;
+}
+
+}  // namespace
+
+Film make_film(const Scene& scene, std::span<const double> given, std::uint32_t width, std::uint32_t height,
+               std::uint32_t samples) {
+  return film_of(choose_view(scene, given, width, height), width, height, samples);
+}
+
+Film make_film(const Camera& camera, std::uint32_t width, std::uint32_t height, std::uint32_t samples) {
+  return film_of(view_of(camera), width, height, samples);
 }
 
 std::vector<Ray> rays_through(const Film& film) {

@@ -16,6 +16,7 @@ View choose_view(const Scene& scene, std::span<const double> camera, std::uint32
 // Of that view.
 Film make_film(const Scene& scene, std::span<const double> camera, std::uint32_t width, std::uint32_t height,
                std::uint32_t samples);
+Film make_film(const Camera& camera, std::uint32_t width, std::uint32_t height, std::uint32_t samples);
 
 // A ray through the centre of each pixel, in the order of FILM_STRIP.
 std::vector<Ray> rays_through(const Film& film);

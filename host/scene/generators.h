@@ -21,4 +21,8 @@ Scene make_scatter(std::uint32_t triangle_count, std::uint64_t seed = 1);
 // of cells may be incomplete.
 Scene make_terrain(std::uint32_t triangle_count);
 
+// "moving:N": exactly `triangle_count` triangles, all of which move: water in waves, a column that twists, a
+// shell that explodes and comes together, a swarm around the column. A cycle takes four seconds.
+Scene make_moving(std::uint32_t triangle_count);
+
 }  // namespace coppice

@@ -6,6 +6,7 @@
 
 #include "scene/generators.h"
 #include "scene/grove_trees.h"
+#include "scene/motion.h"
 #include "scene/shapes.h"
 
 // The built-in scene: a coppiced wood. Trees that are cut to the stool every few years and grow again from
@@ -203,6 +204,20 @@ void append_floor(Scene& scene, Random& random) {
   }
 }
 
+// All that stands over the ground bends, by the square of its height: trees much, stones and ground next to
+// nothing.
+std::shared_ptr<const Motion> wind_in(const Scene& scene) {
+  const auto motion = std::make_shared<Motion>();
+  motion->rest = scene.positions;
+  motion->deformations = {{.vertices = {.first = 0, .count = static_cast<std::uint32_t>(scene.positions.size())},
+                           .kind = DeformKind::sway,
+                           .size = 7,
+                           .amount = 0.05f,
+                           .seconds = 4}};
+  motion->duration_seconds = 4;
+  return motion;
+}
+
 }  // namespace
 
 Scene make_grove() {
@@ -221,6 +236,7 @@ Scene make_grove() {
   scene.light.direction = glm::normalize(glm::vec3{0.62f, 0.66f, 0.42f});
   scene.light.radiance = {1.25f, 1.15f, 0.95f};
   scene.ambient_light = {0.30f, 0.34f, 0.40f};
+  scene.motion = wind_in(scene);
   return scene;
 }
 

@@ -55,7 +55,8 @@ glm::dvec3 deformed(const Deformation& how, glm::dvec3 q, glm::dvec3 first, std:
     }
     case DeformKind::sway: {
       const double height = std::max(q.y, 0.0), bend = how.amount * height * height;
-      return q + glm::dvec3{bend * wave_of(phase + q.x), 0, 0.5 * bend * wave_of(2 * phase + q.z)};
+      const auto swing = [](double at, double start) { return wave_of(at) - wave_of(start); };
+      return q + glm::dvec3{bend * swing(phase + q.x, q.x), 0, 0.5 * bend * swing(2 * phase + q.z, q.z)};
     }
   }
   return q;
@@ -99,6 +100,7 @@ glm::dvec3 posed(const Motion& motion, const Pose& pose, std::size_t vertex, glm
 
 SequenceTime time_in(const VertexSequence& sequence, double seconds) {
   const std::uint32_t frames = sequence.frame_count();
+  if (frames == 0) return {0, 0, 0};
   double at = (seconds - sequence.first_second) * sequence.frames_per_second;
   if (sequence.repeats) at -= std::floor(at / frames) * frames;
   at = std::min(std::max(at, 0.0), static_cast<double>(frames) - (sequence.repeats ? 0.0 : 1.0));
@@ -110,6 +112,13 @@ SequenceTime time_in(const VertexSequence& sequence, double seconds) {
 float phase_of(const Deformation& deformation, double seconds) {
   const double cycles = seconds / deformation.seconds;
   return static_cast<float>(cycles - std::floor(cycles));
+}
+
+Motion motion_of(const Scene& scene) {
+  if (scene.motion) return *scene.motion;
+  Motion still;
+  still.rest = scene.positions;
+  return still;
 }
 
 Pose pose_at(const Motion& motion, double seconds) {

@@ -58,6 +58,7 @@ enum class DeformKind : std::uint32_t {
   explode,  // pieces fly apart from the centre, tumble and come back
   swarm,    // pieces circle the axis y, each at a speed of its own
   sway,     // bends in the wind, the more the higher a vertex lies over the centre
+  // Of twist, explode and sway all vertices are at rest at second 0.
 };
 
 // A deformation that a kernel computes from the time alone.
@@ -88,7 +89,7 @@ class Rig {
   virtual Pose pose(double seconds) const = 0;  // a pure function; every time has one
 };
 
-// What moves in a scene. Scene::positions are those at second 0.
+// What moves in a scene, or could: Scene::positions are those at second 0.
 struct Motion {
   std::vector<glm::vec3> rest;  // one a vertex of the scene
   std::vector<VertexSequence> sequences;
@@ -103,6 +104,9 @@ struct Motion {
   double duration_seconds = 1;    // of one cycle; positive
   double frames_per_second = 30;  // that the scene asks for; positive
 };
+
+// Of a scene without motion, too: one joint that stands still.
+Motion motion_of(const Scene& scene);
 
 // The pose with to_scene applied to joints and camera. At least one joint.
 Pose pose_at(const Motion& motion, double seconds);

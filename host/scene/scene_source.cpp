@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::uint32_t SCATTER_DEFAULT = 1'000'000;
 constexpr std::uint32_t TERRAIN_DEFAULT = 500'000;
+constexpr std::uint32_t MOVING_DEFAULT = 100'000;
 
 // "name:rest" as its two parts; no second part where there is no colon.
 struct NameAndRest {
@@ -97,6 +98,11 @@ std::optional<BuiltIn> find_built_in(const std::string& spec) {
     const std::uint32_t count = parse_count(spec, text, TERRAIN_DEFAULT);
     return BuiltIn{{count, count / 2 + 1}, [=] { return make_terrain(count); }};
   }
+  if (name == "moving") {
+    const std::uint32_t count = parse_count(spec, text, MOVING_DEFAULT);
+    // At most: two fifths of unshared corners, the rest in grids.
+    return BuiltIn{{count, std::uint64_t{2} * count + 64}, [=] { return make_moving(count); }};
+  }
   return std::nullopt;
 }
 
@@ -139,7 +145,8 @@ std::vector<SceneListing> list_scenes() {
   return {
       {"grove", "a coppiced wood: stools, shoots, rocks and felled logs", grove_triangles, false},
       {"scatter", "clusters of unconnected triangles of all sizes, for benchmarks", SCATTER_DEFAULT, true},
-      {"terrain", "one connected height field", TERRAIN_DEFAULT, true}};
+      {"terrain", "one connected height field", TERRAIN_DEFAULT, true},
+      {"moving", "waves, a twist, an explosion and a swarm, for animate", MOVING_DEFAULT, true}};
 }
 
 std::vector<SceneListing> list_hard_scenes() {

@@ -39,7 +39,7 @@ struct SceneSize {
 // InputError where open_scene would, but for what is only found in files.
 std::optional<SceneSize> built_in_size(const std::string& spec);
 
-// Opens what the user named: the path of an .obj file, "grove", "scatter[:N]", "terrain[:N]" or
+// Opens what the user named: the path of an .obj file, "grove", "scatter[:N]", "terrain[:N]", "moving[:N]" or
 // "hard:CASE[:N[:SEED]]", with SEED a decimal number below 2^64, 1 if not given. A built-in name wins over a
 // file of the same name ("./grove" names the file). The scene is stood up (stand_up) and brought into range
 // (bring_into_range).

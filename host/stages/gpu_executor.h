@@ -14,7 +14,7 @@ class GpuExecutor {
  public:
   // Allocates the layout's blocks. Throws DeviceError when they do not fit.
   GpuExecutor(Device& device, const Layout& layout)
-      : device_(device), layout_(layout), arena_(device, layout.block_bytes()) {}
+      : device_(device), layout_(layout), arena_(device, layout.block_bytes(), layout.mapped_blocks()) {}
 
   Chain chain() const { return Chain(arena_.block_addresses()); }
 

@@ -63,6 +63,7 @@ class Layout {
     layout.apart_ = true;
     layout.block_bytes_.resize(memory_kinds);
     layout.slot_ends_.resize(memory_kinds);
+    layout.mapped_.resize(memory_kinds);
     return layout;
   }
 
@@ -71,6 +72,15 @@ class Layout {
   Slot<T> add(const std::string& name, std::uint64_t count, Memory memory = Memory::scratch) {
     return {reserve({name, {}, count, sizeof(T)}, memory), count};
   }
+
+  // A slot that the host maps, in a block of such slots: what it tells a frame, and what a frame tells it.
+  // Not where kinds of memory lie apart.
+  template <class T>
+  Slot<T> add_mapped(const std::string& name, std::uint64_t count) {
+    return {reserve_in({name, {}, count, sizeof(T)}, true), count};
+  }
+
+  const std::vector<bool>& mapped_blocks() const { return mapped_; }  // one a block
 
   // Of a layout whose kinds of memory lie apart.
   std::uint64_t bytes_of(Memory memory) const { return block_bytes_.at(static_cast<std::size_t>(memory)); }
@@ -82,11 +92,15 @@ class Layout {
   const std::vector<SlotListing>& slots() const { return slots_; }
 
  private:
+  std::uint64_t bytes_with_guard(const SlotListing& slot) const;
   Place reserve(SlotListing slot, Memory memory);
+  Place reserve_in(SlotListing slot, bool mapped);
+  Place place_in(std::uint32_t block, SlotListing slot, std::uint64_t bytes);
 
   std::uint64_t max_block_bytes_;
   bool apart_ = false;
   std::vector<std::uint64_t> block_bytes_;
+  std::vector<bool> mapped_;                           // by block
   std::vector<std::vector<std::uint64_t>> slot_ends_;  // by block, ascending
   std::vector<SlotListing> slots_;
 };

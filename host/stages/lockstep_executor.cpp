@@ -108,19 +108,15 @@ std::optional<Difference> LockstepExecutor::compare_slot(const StageDeclaration&
 }
 
 std::optional<Difference> LockstepExecutor::compare(const StageDeclaration* stage, const char* name) {
-  const std::vector<SlotListing>& slots = layout_.slots();
-  for (std::size_t i = 0; i < slots.size(); ++i) {
-    const SlotListing& slot = slots[i];
-    // Slots follow each other: up to the next one, or the block's end, lie a gap and the guard.
-    const bool last = i + 1 == slots.size() || slots[i + 1].place.block != slot.place.block;
-    const std::uint64_t next = last ? layout_.block_bytes()[slot.place.block] : slots[i + 1].place.offset;
+  for (const SlotListing& slot : layout_.slots()) {
+    const std::uint64_t end = layout_.end_of_slot(slot.place);  // behind it lie a gap and the guard
     std::uint64_t first = 0;
     const NearlySlot* const nearly = every_bit_ ? nullptr : find_nearly(stage, slot);
     if (nearly) {
       if (auto difference = compare_slot(*stage, *nearly, slot)) return difference;
       first = slot.bytes();
     }
-    if (auto difference = compare_bits(name, slot, first, next - slot.place.offset)) return difference;
+    if (auto difference = compare_bits(name, slot, first, end - slot.place.offset)) return difference;
   }
   return std::nullopt;
 }

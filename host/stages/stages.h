@@ -10,6 +10,7 @@
 #include "interface/scan.h"
 #include "interface/sort.h"
 #include "interface/trace.h"
+#include "interface/vertex.h"
 #include "interface/wide.h"
 #include "stages/run_counts.h"
 #include "stages/stage.h"
@@ -19,6 +20,10 @@
 // kernel's specialization constants, and what of its result only nearly equals the twin's on a GPU, see
 // below.
 #define COPPICE_STAGES(STAGE)                                                          \
+  STAGE(vertex_sequence, VertexSequenceArgs, NoConstants, exactly)                     \
+  STAGE(vertex_morph, VertexMorphArgs, NoConstants, exactly)                           \
+  STAGE(vertex_deform, VertexDeformArgs, NoConstants, exactly)                         \
+  STAGE(vertex_pose, VertexPoseArgs, NoConstants, exactly)                             \
   STAGE(gather_triangles, GatherTrianglesArgs, NoConstants, exactly)                   \
   STAGE(primitive_bounds, PrimitiveBoundsArgs, NoConstants, exactly)                   \
   STAGE(box_bounds, BoxBoundsArgs, NoConstants, exactly)                               \

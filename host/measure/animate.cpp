@@ -1,0 +1,123 @@
+#include "measure/animate.h"
+
+#include <chrono>
+
+#include "analysis/tree_hash.h"
+#include "measure/measure_build.h"
+#include "measure/progress.h"
+#include "measure/trace_events.h"
+#include "pipeline/bounded_submits.h"
+#include "render/film.h"
+
+namespace coppice {
+
+namespace {
+
+using AnimateClock = std::chrono::steady_clock;
+
+class FrameLoop {
+ public:
+  FrameLoop(const Scene& scene, const AnimateRuns& runs, MovingFrames& frames, AnimateReport& report)
+      : scene_(scene), runs_(runs), frames_(frames), report_(report) {}
+
+  void run() {
+    const InterruptionGuard guard;
+    Progress progress("frames", runs_.last - runs_.first + 1);
+    for (std::uint32_t number = runs_.first; number <= runs_.last; ++number) {
+      throw_if_interrupted();
+      progress.step();
+      if (runs_.skip && runs_.skip(number)) {
+        ++report_.skipped;
+        continue;
+      }
+      if (!frames_.has_room()) take();
+      if (frames_.is_empty()) last_done_ = AnimateClock::now();
+      const double seconds = number / runs_.frames_per_second;
+      frames_.submit(seconds, film_at(scene_, seconds, runs_.camera, runs_.trace));
+      under_way_.push_back(number);
+    }
+    while (!frames_.is_empty()) take();
+    throw_if_interrupted();
+  }
+
+ private:
+  void take() {
+    const MovingFrame frame = frames_.take();
+    ++report_.host_waits;
+    ++report_.rebuilds;
+    const auto now = AnimateClock::now();
+    const std::uint32_t number = under_way_.front();
+    under_way_.pop_front();
+    report_.frames.push_back({number, std::chrono::duration<double, std::milli>(now - last_done_).count(),
+                              frame.vertices_ms, frame.build_ms, frame.wide_ms, frame.trace_ms,
+                              frame.total_ms, frame.state.active_count, frame.counts.rays, frame.counts.hits,
+                              frame.counts.steps, image_hash(frame.image)});
+    last_done_ = now;
+    if (runs_.picture) runs_.picture(number, frame.image);
+  }
+
+  const Scene& scene_;
+  const AnimateRuns& runs_;
+  MovingFrames& frames_;
+  AnimateReport& report_;
+  std::deque<std::uint32_t> under_way_;
+  AnimateClock::time_point last_done_;
+};
+
+// The kernels of the last frame that was told, each with a time of its own.
+void split_kernels(CheckedDevice& device, MovingFrames& frames, const AnimateRuns& runs,
+                   AnimateReport& report) {
+  const KernelSplit split = split_time(frames.executor(), frames.steps(), piece_limit_seconds);
+  const FramePlan& plan = frames.plan();
+  RunCounts counts = counts_of_build(frames.executor(), *plan.build, plan.wide ? &*plan.wide : nullptr);
+  const RunCounts trace = counts_of_trace(frames.executor().read(plan.trace.counters)[0]);
+  counts.rays = trace.rays;
+  counts.hits = trace.hits;
+  counts.steps = trace.steps;
+  KernelSums sums;
+  sums.add(split.steps, split.times, counts);
+  report.kernels = kernel_table(sums, find_copy_limit(device, sums.largest_dispatch()), split.times.total_ms);
+  if (runs.trace_events.empty()) return;
+  TraceEvents events;
+  events.add(split);
+  events.write(runs.trace_events, device);
+}
+
+}  // namespace
+
+Film film_at(const Scene& scene, double seconds, std::span<const double> camera, const TraceOptions& trace) {
+  if (!camera.empty() || !scene.motion)
+    return make_film(scene, camera, trace.width, trace.height, trace.samples);
+  const Pose pose = pose_at(*scene.motion, seconds);
+  if (!pose.camera) return make_film(scene, {}, trace.width, trace.height, trace.samples);
+  return make_film(*pose.camera, trace.width, trace.height, trace.samples);
+}
+
+AnimateReport animate(CheckedDevice& device, const Scene& scene, const AnimateRuns& runs) {
+  const SceneArrays arrays = scene_arrays(scene);
+  AnimateReport report;
+  report.scene = scene.name;
+  report.builder = runs.builder.name;
+  report.device = device.properties().name;
+  report.driver = device.properties().driver;
+  report.triangles = arrays.triangle_count();
+  report.vertices = scene.positions.size();
+  report.morton_bits = runs.builder.bits_for(arrays.triangles);
+  report.width = runs.trace.width;
+  report.height = runs.trace.height;
+  report.walks_wide = is_wide(runs.trace.walk);
+  report.frames_per_second = runs.frames_per_second;
+  const MovingOptions options{.build = device.build_options(runs.builder.build_options(report.morton_bits)),
+                              .trace = runs.trace};
+  MovingFrames frames(device.device(), scene, options);
+  report.device_bytes = device_bytes(frames.layout());
+  const InterruptionGuard guard;
+  const double first = runs.first / runs.frames_per_second;  // compiles the kernels
+  frames.submit(first, film_at(scene, first, runs.camera, runs.trace));
+  frames.take();
+  FrameLoop(scene, runs, frames, report).run();
+  if (runs.split) split_kernels(device, frames, runs, report);
+  return report;
+}
+
+}  // namespace coppice

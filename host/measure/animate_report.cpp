@@ -1,0 +1,142 @@
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "analysis/tree_hash.h"
+#include "measure/animate.h"
+#include "measure/curves.h"
+#include "measure/table.h"
+
+namespace coppice {
+
+namespace {
+
+using FrameValue = double AnimatedFrame::*;
+
+std::vector<double> values_of(const AnimateReport& report, FrameValue value) {
+  std::vector<double> values;
+  for (const AnimatedFrame& frame : report.frames) values.push_back(frame.*value);
+  return values;
+}
+
+// The least value that so many percent of the values do not exceed.
+double percentile(std::vector<double> values, double percent) {
+  if (values.empty()) return 0;
+  std::ranges::sort(values);
+  const double rank = std::ceil(percent / 100 * static_cast<double>(values.size()));
+  return values[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
+}
+
+Json percentiles(const AnimateReport& report, FrameValue value) {
+  const std::vector<double> values = values_of(report, value);
+  return {{"p50", percentile(values, 50)},
+          {"p95", percentile(values, 95)},
+          {"p99", percentile(values, 99)},
+          {"max", percentile(values, 100)}};
+}
+
+struct TimedPart {
+  const char* name;
+  const char* what;
+  FrameValue value;
+};
+
+constexpr TimedPart timed_parts[] = {
+    {"frame", "from picture to picture, by the host's clock", &AnimatedFrame::frame_ms},
+    {"device", "of it on the device: one submit", &AnimatedFrame::device_ms},
+    {"vertices", "to where they are", &AnimatedFrame::vertices_ms},
+    {"build", "triangles to tree", &AnimatedFrame::build_ms},
+    {"wide", "the tree with eight children a node", &AnimatedFrame::wide_ms},
+    {"trace", "camera rays to picture", &AnimatedFrame::trace_ms}};
+
+std::string csv_of_frames(const AnimateReport& report) {
+  Table table({{.key = "frame", .places = IN_CSV},
+               {.key = "frame_ms", .precision = 3, .places = IN_CSV},
+               {.key = "device_ms", .precision = 3, .places = IN_CSV},
+               {.key = "vertices_ms", .precision = 3, .places = IN_CSV},
+               {.key = "build_ms", .precision = 3, .places = IN_CSV},
+               {.key = "wide_ms", .precision = 3, .places = IN_CSV},
+               {.key = "trace_ms", .precision = 3, .places = IN_CSV},
+               {.key = "active", .places = IN_CSV},
+               {.key = "hits", .places = IN_CSV},
+               {.key = "steps", .places = IN_CSV},
+               {.key = "image_hash", .places = IN_CSV, .quoted = false}});
+  for (const AnimatedFrame& f : report.frames) {
+    table.add({{std::uint64_t{f.number}, f.frame_ms, f.device_ms, f.vertices_ms, f.build_ms, f.wide_ms,
+                f.trace_ms, std::uint64_t{f.active_count}, f.hits, f.steps, hex16(f.hash)}});
+  }
+  return table.csv();
+}
+
+}  // namespace
+
+Json to_json(const AnimateReport& report) {
+  Json hashes = Json::array(), numbers = Json::array();
+  for (const AnimatedFrame& frame : report.frames) {
+    hashes.push_back(hex16(frame.hash));
+    numbers.push_back(frame.number);
+  }
+  Json json = {{"scene", report.scene},
+               {"triangles", report.triangles},
+               {"vertices", report.vertices},
+               {"builder", report.builder},
+               {"morton_bits", report.morton_bits},
+               {"device", report.device},
+               {"driver", report.driver},
+               {"width", report.width},
+               {"height", report.height},
+               {"tree", report.walks_wide ? "wide" : "binary"},
+               {"frames_per_second", report.frames_per_second},
+               {"frames", report.frames.size()},
+               {"skipped", report.skipped},
+               {"update", "rebuild"}};
+  for (const TimedPart& part : timed_parts)
+    json[std::string(part.name) + "_ms"] = percentiles(report, part.value);
+  const auto frames = static_cast<double>(std::max<std::size_t>(report.frames.size(), 1));
+  json["host_waits_per_frame"] = static_cast<double>(report.host_waits) / frames;
+  json["rebuilds"] = report.rebuilds;
+  json["refits"] = report.refits;
+  json["frame_numbers"] = numbers;
+  json["frame_hashes"] = hashes;
+  json["peak_device_bytes"] = report.device_bytes;
+  json["kernels"] = to_json(report.kernels);
+  sums_to_json(report.kernels, json);
+  return json;
+}
+
+std::string text_of(const AnimateReport& report) {
+  std::string text = format("%s: %llu triangles, %zu frames of %ux%u by %s on %s, %s tree\n",
+                            report.scene.c_str(), static_cast<unsigned long long>(report.triangles),
+                            report.frames.size(), report.width, report.height, report.builder.c_str(),
+                            report.device.c_str(), report.walks_wide ? "wide" : "binary");
+  if (report.skipped) text += format("  %u frames are there already\n", report.skipped);
+  if (report.frames.empty()) return text;
+  Table table({{.heading = "ms", .width = -10, .gap = 2},
+               {.heading = "p50", .width = 9, .precision = 2},
+               {.heading = "p95", .width = 9, .precision = 2},
+               {.heading = "p99", .width = 9, .precision = 2},
+               {.heading = "max", .width = 9, .precision = 2}});
+  for (const TimedPart& part : timed_parts) {
+    const std::vector<double> values = values_of(report, part.value);
+    table.add({{part.name, percentile(values, 50), percentile(values, 95), percentile(values, 99),
+                percentile(values, 100)},
+               part.what});
+  }
+  text += table.text();
+  const double p50 = percentile(values_of(report, &AnimatedFrame::frame_ms), 50);
+  text += format("  %.1f frames a second, %.1f MB on the device\n", p50 > 0 ? 1000 / p50 : 0,
+                 static_cast<double>(report.device_bytes) / 1e6);
+  if (!report.kernels.rows.empty()) text += text_of(report.kernels);
+  return text;
+}
+
+std::string to_csv(const AnimateReport& report) { return csv_of_frames(report) + "\n"; }
+
+std::string to_svg(const AnimateReport& report) {
+  CurvePanel times{"ms", {}};
+  for (const TimedPart& part : timed_parts)
+    times.curves.push_back({part.name, values_of(report, part.value)});
+  const double first = report.frames.empty() ? 0 : report.frames.front().number;
+  return to_svg(report.scene + ", " + report.builder + " on " + report.device, "frame", first, {times});
+}
+
+}  // namespace coppice
