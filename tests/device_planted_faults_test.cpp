@@ -13,9 +13,11 @@
 #include "pipeline/trace_any.h"
 #include "pipeline/wide_plan.h"
 #include "render/frame.h"
+#include "render/moving_vertices.h"
 #include "scene/hard_cases.h"
 #include "stages/lockstep_executor.h"
 #include "stages/stages.h"
+#include "support/moving_scenes.h"
 #include "support/test_device.h"
 
 namespace coppice {
@@ -36,7 +38,8 @@ constexpr Frame frames[] = {
     {1000, DeviceBuilder::hploc, true, Walk::wide_single},
     {300, DeviceBuilder::ploc, true, Walk::brute_force},
     {SORT_SCAN_TILE + 100, DeviceBuilder::ploc, false, Walk::binary}};  // one tile alone sorts without a scan
-constexpr std::size_t scan_and_copy = std::size(frames), inputs = scan_and_copy + 1, chain_count = inputs + 1;
+constexpr std::size_t scan_and_copy = std::size(frames), inputs = scan_and_copy + 1, vertices = inputs + 1,
+                      chain_count = vertices + 1;
 
 using Spoil = std::function<void(std::vector<Step>&, const LockstepExecutor&)>;
 
@@ -111,16 +114,16 @@ Found run_inputs(Device& device, const Spoil& spoil) {
   const std::vector<Aabb> boxes(count, Aabb{vec3(1), vec3(2)});
   const std::vector<BatchRange> ranges = {{0, 100}, {100, 200}};
   Layout layout(device.properties().max_block_bytes);
-  const auto vertices = layout.add<Triangle>("vertices", count);
+  const auto corners = layout.add<Triangle>("vertices", count);
   const auto given = layout.add<Aabb>("given", count);
   const BatchPlan batch = plan_batch(layout, count, 2, {});
   const PrimitiveSlots primitives = plan_primitives(layout, count, PrimitiveKind::boxes);
   LockstepExecutor executor(device, layout);
-  executor.upload(vertices, std::span<const Triangle>(triangles));
+  executor.upload(corners, std::span<const Triangle>(triangles));
   executor.upload(given, std::span<const Aabb>(boxes));
   executor.upload(batch.ranges, std::span<const BatchRange>(ranges));
   auto difference = executor.run([&](Chain& chain) {
-    VertexTriangles input{.vertices = {chain.at(vertices).value}, .vertex_count = 3 * count};
+    VertexTriangles input{.vertices = {chain.at(corners).value}, .vertex_count = 3 * count};
     append_batch(chain, batch, {input, {}});
     append_primitives(chain, primitives, {GivenBoxes{{chain.at(given).value}}, {}});
     spoil(chain.steps(), executor);
@@ -128,7 +131,23 @@ Found run_inputs(Device& device, const Spoil& spoil) {
   return {std::move(difference), {executor.nearly().begin(), executor.nearly().end()}};
 }
 
+Found run_vertices(Device& device, const Spoil& spoil) {
+  const Scene scene = all_that_moves(20);
+  Layout layout(device.properties().max_block_bytes);
+  const MovingVertices plan = plan_vertices(layout, *scene.motion, 180);
+  const MotionSlots told = plan_motion(layout, *scene.motion);
+  LockstepExecutor executor(device, layout);
+  upload_vertices(executor, plan, *scene.motion, std::span<const uvec3>(scene.indices));
+  upload_step(executor, told, motion_step(*scene.motion, pose_at(*scene.motion, 0.4), 0.4));
+  auto difference = executor.run([&](Chain& chain) {
+    append_vertices(chain, plan, told, *scene.motion);
+    spoil(chain.steps(), executor);
+  });
+  return {std::move(difference), {executor.nearly().begin(), executor.nearly().end()}};
+}
+
 Found run_chain(Device& device, std::size_t chain, const Spoil& spoil) {
+  if (chain == vertices) return run_vertices(device, spoil);
   if (chain == inputs) return run_inputs(device, spoil);
   return chain == scan_and_copy ? run_scan_and_copy(device, spoil) : run_frame(device, frames[chain], spoil);
 }

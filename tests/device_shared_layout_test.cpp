@@ -16,6 +16,11 @@ std::vector<std::uint32_t> field_offsets<WideNode>() {
           offsetof(WideNode, child)};
 }
 
+template <>
+std::vector<std::uint32_t> field_offsets<Joint>() {
+  return {offsetof(Joint, rows)};
+}
+
 namespace {
 
 template <class T>
@@ -68,7 +73,11 @@ TEST(SharedLayout, ElementsOfEverySlot) {
   EXPECT_SAME_LAYOUT(WideEntry);
   EXPECT_SAME_LAYOUT(WideLevel);
   EXPECT_SAME_LAYOUT(WideCounts);
-  EXPECT_EQ(seen.size(), 18u);
+  EXPECT_SAME_LAYOUT(SequenceStep);
+  EXPECT_SAME_LAYOUT(DeformStep);
+  EXPECT_SAME_LAYOUT(Joint);
+  EXPECT_SAME_LAYOUT(VertexJoints);
+  EXPECT_EQ(seen.size(), 22u);
 }
 
 }  // namespace

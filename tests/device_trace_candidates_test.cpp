@@ -10,7 +10,9 @@
 #include "analysis/hard_rays.h"
 #include "builders/lbvh.h"
 #include "builders/ploc.h"
+#include "render/scene_arrays.h"
 #include "scene/hard_cases.h"
+#include "stages/gpu_executor.h"
 #include "support/floor.h"
 #include "support/traced.h"
 

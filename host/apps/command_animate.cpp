@@ -1,4 +1,5 @@
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -83,6 +84,7 @@ class AnimateCommand : public Command {
   void check(const CLI::App&) override {
     parse_view(picture_);
     parse_frames();
+    if (std::isnan(frames_per_second_)) throw CLI::ValidationError("--fps: 'nan' is no number of frames");
     if (video_.empty()) return;
     if (folder_.empty()) throw CLI::ValidationError("--video needs the pictures of -o DIR");
     const std::string ending = fs::path(video_).extension();

@@ -119,7 +119,7 @@ std::string text_of(const AnimateReport& report) {
     const std::vector<double> values = values_of(report, part.value);
     table.add({{part.name, percentile(values, 50), percentile(values, 95), percentile(values, 99),
                 percentile(values, 100)},
-               part.what});
+               std::string("  ") + part.what});
   }
   text += table.text();
   const double p50 = percentile(values_of(report, &AnimatedFrame::frame_ms), 50);

@@ -31,7 +31,7 @@ struct VertexSequence {
   // frame * vertices.count + vertex; at least one frame. Before the first and after the last frame that one
   // holds, unless the sequence repeats.
   bool repeats = false;
-  std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> positions{};
 
   std::uint32_t frame_count() const {
     return vertices.count == 0 ? 0 : static_cast<std::uint32_t>(positions.size() / vertices.count);
@@ -42,7 +42,7 @@ struct VertexSequence {
 struct MorphTarget {
   VertexRange vertices;
   std::uint32_t weight = 0;        // index into Pose::morph_weights
-  std::vector<glm::vec3> offsets;  // one a vertex
+  std::vector<glm::vec3> offsets{};  // one a vertex
 };
 
 // Between which frames a time lies, and which part of the way from the first of them to the second.

@@ -1,0 +1,117 @@
+// `coppice animate` as scripts and a farm's scheduler call it.
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "support/command.h"
+
+namespace coppice {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* small_scene = "animate moving:600 --size 48x32 ";
+
+json json_of(const Outcome& outcome) {
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  return json::parse(outcome.out, nullptr, false);
+}
+
+using CommandAnimate = Command;
+
+TEST_F(CommandAnimate, SaysWhatEveryFrameTook) {
+  const json report = json_of(run(std::string(small_scene) + "--frames 5 --validate --json -"));
+  ASSERT_TRUE(report.is_object());
+  EXPECT_EQ(report["frames"], 5);
+  EXPECT_EQ(report["update"], "rebuild");
+  EXPECT_EQ(report["rebuilds"], 5);
+  EXPECT_EQ(report["refits"], 0);
+  EXPECT_EQ(report["host_waits_per_frame"], 1.0);
+  EXPECT_GT(report["peak_device_bytes"], 0);
+  for (const char* const part : {"frame_ms", "build_ms", "trace_ms", "wide_ms", "vertices_ms", "device_ms"}) {
+    for (const char* const percentile : {"p50", "p95", "p99", "max"})
+      EXPECT_TRUE(report[part][percentile].is_number()) << part << ' ' << percentile;
+    EXPECT_LE(report[part]["p50"], report[part]["p95"]) << part;
+    EXPECT_LE(report[part]["p99"], report[part]["max"]) << part;
+  }
+  const std::set<std::string> hashes(report["frame_hashes"].begin(), report["frame_hashes"].end());
+  EXPECT_EQ(report["frame_hashes"].size(), 5u);
+  EXPECT_EQ(hashes.size(), 5u) << "the scene moves";
+  std::set<std::string> kernels;
+  for (const json& kernel : report["kernels"]) kernels.insert(kernel["name"]);
+  for (const char* const stage : {"vertex_deform", "vertex_pose", "gather_triangles", "hploc_build"})
+    EXPECT_TRUE(kernels.contains(stage)) << stage;
+}
+
+// A few at a time, as a farm does it, the frames are those of one run; and what is there already stays.
+TEST_F(CommandAnimate, TwoProcessesShareASequence) {
+  const std::string program = std::string("timeout 100 ") + COPPICE_PROGRAM + " " + small_scene;
+  const std::string both = "(" + program + "--frames 0..3 -o shared --json a.json & one=$!; " + program +
+                           "--frames 4..6 -o shared --json b.json; two=$?; wait $one && exit $two)";
+  ASSERT_EQ(std::system(("exec 2>err.txt; " + both).c_str()), 0) << read("err.txt");
+  const json whole = json_of(run(std::string(small_scene) + "--frames 7 -o alone --json -"));
+  json hashes = json::parse(read("a.json"))["frame_hashes"];
+  const json second = json::parse(read("b.json"));
+  for (const json& hash : second["frame_hashes"]) hashes.push_back(hash);
+  EXPECT_EQ(whole["frame_hashes"], hashes);
+  std::size_t files = 0;
+  for (const auto& entry : fs::directory_iterator("shared")) {
+    ++files;
+    EXPECT_EQ(read(entry.path()), read(fs::path("alone") / entry.path().filename())) << entry.path();
+  }
+  EXPECT_EQ(files, 7u);
+
+  fs::remove("shared/frame_00002.png");
+  write("shared/frame_00005.png", "as it was");
+  const json rest =
+      json_of(run(std::string(small_scene) + "--frames 0..6 -o shared --skip-existing --json -"));
+  EXPECT_EQ(rest["skipped"], 6);
+  EXPECT_EQ(rest["frame_numbers"], json::array({2}));
+  EXPECT_EQ(read("shared/frame_00002.png"), read("alone/frame_00002.png"));
+  EXPECT_EQ(read("shared/frame_00005.png"), "as it was");
+}
+
+TEST_F(CommandAnimate, WritesCurvesAndATable) {
+  const Outcome outcome =
+      run(std::string(small_scene) + "--frames 2..4 --fps 10 --plot curves.svg --csv frames.csv");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("frames a second"), std::string::npos) << outcome.out;
+  const std::string csv = read("frames.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 4) << csv;
+  EXPECT_NE(csv.find("\n2,"), std::string::npos) << csv;
+  const std::string svg = read("curves.svg");
+  EXPECT_EQ(svg.rfind("</svg>\n"), svg.size() - 7);
+  EXPECT_NE(svg.find("trace"), std::string::npos);
+}
+
+TEST_F(CommandAnimate, AScenePicturedStandsStillAndSaysSo) {
+  const Outcome outcome = run("animate one.obj --size 32x24 --frames 3 --json -");
+  const json report = json_of(outcome);
+  EXPECT_NE(outcome.err.find("nothing moves"), std::string::npos) << outcome.err;
+  EXPECT_EQ(report["frame_hashes"][0], report["frame_hashes"][2]);
+  const json still = json_of(run("render one.obj --size 32x24 -o out.png --json -"));
+  EXPECT_EQ(report["frame_hashes"][0], still["image_hash"]);
+}
+
+TEST_F(CommandAnimate, RefusesWhatItCannotDo) {
+  write("file", "no folder");
+  const struct {
+    const char *arguments, *part;
+    int status;
+  } cases[] = {{"--frames 0", "--frames: '0'", 2},
+               {"--frames 5..4", "--frames: '5..4'", 2},
+               {"--frames 1..", "--frames: '1..'", 2},
+               {"--frames -3", "--frames", 2},
+               {"--frames 2000000", "--frames", 2},
+               {"--fps 0", "--fps", 2},
+               {"--fps nan", "--fps", 2},
+               {"--video a.mp4", "--video needs", 2},
+               {"-o shared --video a.avi", "does not end in .mp4 or .webp", 2},
+               {"--builder sah", "--builder", 2},
+               {"-o file", "file", 1},
+               {"-o file/in", "file/in", 1}};
+  for (const auto& c : cases) expect_refused(std::string(small_scene) + c.arguments, c.status, c.part);
+  EXPECT_EQ(read("file"), "no folder");
+}
+
+}  // namespace
+}  // namespace coppice
