@@ -93,6 +93,7 @@ void main() {
   uint place = find_place(index);
   place_children(index, place, entry.first_child);
   Node root = load_node(args.nodes, entry.root);
+  if (root.box_min.x > root.box_max.x) root = Node(vec3(0.0), 0u, vec3(0.0), 0u);  // NOTHING_BOX: no child has a box
   uvec3 exponents = cell_exponents(root);
   Grid grid = Grid(root.box_min, cells_of(exponents));
   args.wide_nodes.at[place].origin = grid.origin;

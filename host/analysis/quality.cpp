@@ -8,6 +8,7 @@ namespace coppice {
 namespace {
 
 double half_area(const Node& node) {
+  if (node.box_min.x > node.box_max.x) return 0;  // NOTHING_BOX
   const glm::dvec3 extent = glm::dvec3(node.box_max) - glm::dvec3(node.box_min);
   return extent.x * extent.y + extent.y * extent.z + extent.z * extent.x;
 }

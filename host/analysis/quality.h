@@ -18,7 +18,8 @@ struct TreeQuality {
 // Measures a valid tree (find_fault names no fault); all zero for an empty one. The SAH cost (MacDonald and
 // Booth, "Heuristics for ray tracing using space subdivision", 1990; C_i = C_l = 1) is the sum of
 // A(node) / A(root) over the internal nodes and of A(leaf) / A(root) times the leaf's triangles over the
-// leaves. Where A(root) is 0, on coincident or collinear triangles, every ratio counts as 1.
+// leaves; the A of a NOTHING_BOX is 0. Where A(root) is 0, on coincident or collinear triangles, every ratio
+// counts as 1.
 TreeQuality measure_quality(std::span<const Node> nodes);
 
 }  // namespace coppice

@@ -8,6 +8,8 @@
 #include <glm/vector_relational.hpp>
 #include <vector>
 
+#include "interface/refit.h"
+
 namespace coppice {
 namespace {
 
@@ -30,6 +32,10 @@ bool is_finite(const Triangle& triangle) {
     if (!std::isfinite(corner.x) || !std::isfinite(corner.y) || !std::isfinite(corner.z)) return false;
   }
   return true;
+}
+
+bool is_nothing(const Node& node) {
+  return node.box_min == vec3(NOTHING_BOX) && node.box_max == vec3(-NOTHING_BOX);
 }
 
 std::string node_name(std::size_t node) { return "node " + std::to_string(node); }
@@ -68,7 +74,8 @@ class TreeValidation {
       stack.pop_back();
       const Node& node = nodes_[index];
       // Not `box_min > box_max`: a NaN must fail too.
-      if (!glm::all(glm::lessThanEqual(node.box_min, node.box_max))) {
+      const bool is_box = glm::all(glm::lessThanEqual(node.box_min, node.box_max));
+      if (!is_box && !(promises_.refitted && is_nothing(node))) {
         return node_name(index) + " has a box with a NaN or with box_min > box_max";
       }
       if (node.height == 0) {
@@ -96,10 +103,24 @@ class TreeValidation {
              std::to_string(triangles_.size());
     }
     const Triangle& triangle = triangles_[node.child];
-    if (!is_finite(triangle)) return node_name(index) + " holds inactive " + triangle_name(node.child);
     if (++leaves_[node.child] > 1 && !promises_.splits_triangles) {
       return triangle_name(node.child) + " is in more than one leaf";
     }
+    if (is_finite(triangle) ? is_nothing(node) : !promises_.refitted)
+      return node_name(index) + (is_nothing(node) ? " has no box for " : " holds inactive ") +
+             triangle_name(node.child);
+    ++leaf_count_;
+    return is_finite(triangle) ? find_in_corners(index) : find_in_nothing(index);
+  }
+
+  Fault find_in_nothing(std::uint32_t index) const {
+    if (is_nothing(nodes_[index])) return {};
+    return node_name(index) + " has a box for inactive " + triangle_name(nodes_[index].child);
+  }
+
+  Fault find_in_corners(std::uint32_t index) {
+    const Node& node = nodes_[index];
+    const Triangle& triangle = triangles_[node.child];
     const std::array<vec3, 3> corners = {triangle.a, triangle.b, triangle.c};
     for (int i = 0; i < 3; ++i) {
       if (contains(node, corners[i])) corners_[node.child] |= 1 << i;
@@ -114,7 +135,6 @@ class TreeValidation {
         return node_name(index) + " has a box larger than that of " + triangle_name(node.child);
       }
     }
-    ++leaf_count_;
     return {};
   }
 
@@ -127,7 +147,7 @@ class TreeValidation {
              std::to_string(first.height) + " and " + std::to_string(second.height);
     }
     for (const std::uint32_t child : {node.child, node.child + 1}) {
-      if (!contains(node, nodes_[child])) {
+      if (!contains(node, nodes_[child]) && !is_nothing(nodes_[child])) {
         return node_name(index) + " has a box that does not contain that of its child, " + node_name(child);
       }
     }

@@ -41,7 +41,10 @@ bool contains(const Aabb& outer, const Aabb& inner) {
          glm::all(glm::lessThanEqual(inner.box_max, outer.box_max));
 }
 
+bool is_nothing(const Aabb& box) { return glm::any(glm::greaterThan(box.box_min, box.box_max)); }
+
 double half_area(const Aabb& box) {
+  if (is_nothing(box)) return 0;
   const glm::dvec3 extent = glm::dvec3(box.box_max) - glm::dvec3(box.box_min);
   return extent.x * extent.y + extent.y * extent.z + extent.z * extent.x;
 }
@@ -53,8 +56,8 @@ std::string wide_name(std::size_t node, uint child) {
 
 class WideValidation {
  public:
-  WideValidation(std::span<const WideNode> wide_nodes, std::span<const Node> nodes)
-      : wide_(wide_nodes), boxes_(wide_nodes.size(), nothing) {
+  WideValidation(std::span<const WideNode> wide_nodes, std::span<const Node> nodes, bool refitted)
+      : wide_(wide_nodes), boxes_(wide_nodes.size(), nothing), refitted_(refitted) {
     for (const Node& node : nodes) {
       if (node.height != 0) continue;
       leaves_.resize(std::max<std::size_t>(leaves_.size(), node.child + std::size_t{1}));
@@ -136,7 +139,8 @@ class WideValidation {
     for (uint c = 0; c < child_count(wide_[index]); ++c) {
       const uint child = wide_[index].child[c];
       const Aabb below = is_wide(child) ? boxes_[child] : leaves_[child - WIDE_LEAF].box;
-      if (!contains(decoded_box(wide_[index], c), below))
+      const Aabb decoded = decoded_box(wide_[index], c);
+      if (is_nothing(below) ? !is_nothing(decoded) : !contains(decoded, below))
         return wide_name(index, c) + " has a box that does not contain what is below it";
       boxes_[index] = united(boxes_[index], below);
     }
@@ -145,6 +149,7 @@ class WideValidation {
 
   // The areas that decided were normalised ones, so what is small within a rounding may pass.
   Fault find_unopened(std::size_t index) {
+    if (refitted_) return {};
     const WideNode& node = wide_[index];
     const double small = half_area(boxes_[index]) / WIDE_SMALL_PARTS * (1 + 0x1p-20);
     if (child_count(node) == WIDE_CHILDREN) return {};
@@ -160,6 +165,7 @@ class WideValidation {
   std::vector<Leaf> leaves_;  // by triangle
   std::uint32_t binary_height_;
   std::size_t leaf_count_;
+  bool refitted_;
 };
 
 }  // namespace
@@ -177,9 +183,9 @@ Aabb decoded_box(const WideNode& node, uint child) {
   return box;
 }
 
-std::optional<std::string> find_wide_fault(std::span<const WideNode> wide_nodes,
-                                           std::span<const Node> nodes) {
-  return WideValidation(wide_nodes, nodes).find();
+std::optional<std::string> find_wide_fault(std::span<const WideNode> wide_nodes, std::span<const Node> nodes,
+                                           bool refitted) {
+  return WideValidation(wide_nodes, nodes, refitted).find();
 }
 
 double WideQuality::children_per_node() const {

@@ -21,8 +21,11 @@ Aabb decoded_box(const WideNode& node, uint child);
 // - each triangle of the binary tree in exactly one leaf, and no other;
 // - the box of a child contains the boxes that the binary tree has for the triangles below it;
 // - no more levels than the binary tree has.
+// Of a refitted one, whose topology was made for other boxes, not what the areas decide; and a child may have
+// the inverted box of nothing, where all triangles below it are inactive.
 // Takes any array, however broken, and ends after each node has been seen once.
-std::optional<std::string> find_wide_fault(std::span<const WideNode> wide_nodes, std::span<const Node> nodes);
+std::optional<std::string> find_wide_fault(std::span<const WideNode> wide_nodes, std::span<const Node> nodes,
+                                           bool refitted = false);
 
 struct WideQuality {
   std::uint64_t nodes = 0, children = 0;

@@ -76,6 +76,16 @@ WidePlan with_count(const WidePlan& plan, std::uint32_t leaves) {
   return fewer;
 }
 
+void append_wide_boxes(Chain& chain, const TreeSlots& tree, const WidePlan& plan) {
+  if (plan.levels_bound == 0) return;
+  const auto counts = chain.at(tree.wide_counts);
+  chain.run_indirect(
+      stages::wide_quantise,
+      {chain.at(tree.nodes), chain.at(plan.entries), chain.at(plan.children), chain.at(plan.offsets), counts,
+       chain.at(tree.wide_nodes)},
+      Place{tree.wide_counts.place.block, tree.wide_counts.place.offset + offsetof(WideCounts, groups)});
+}
+
 void append_wide(Chain& chain, const TreeSlots& tree, const WidePlan& plan) {
   chain.clear(tree.wide_counts);
   chain.clear(plan.levels);
@@ -125,10 +135,7 @@ void append_wide(Chain& chain, const TreeSlots& tree, const WidePlan& plan) {
   for (std::uint32_t level = dispatched; level-- > 0;)
     chain.run_indirect(stages::wide_sizes, {entries, sizes, offsets, levels, level, 0},
                        indirect_groups_of(level));
-  chain.run_indirect(
-      stages::wide_quantise,
-      {chain.at(tree.nodes), entries, children, offsets, counts, chain.at(tree.wide_nodes)},
-      Place{tree.wide_counts.place.block, tree.wide_counts.place.offset + offsetof(WideCounts, groups)});
+  append_wide_boxes(chain, tree, plan);
 }
 
 }  // namespace coppice

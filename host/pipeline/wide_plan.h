@@ -35,4 +35,9 @@ WidePlan with_count(const WidePlan& plan, std::uint32_t leaves);
 // ERROR_WIDE_TOO_DEEP; then, and without a tree, there are none.
 void append_wide(Chain& chain, const TreeSlots& tree, const WidePlan& plan);
 
+// Behind a refit of the binary tree (refit.h): the wide nodes' boxes anew, as a conversion to wide nodes of
+// the same topology leaves them. The plan's scratch still holds what append_wide left there, so no build has
+// used it since.
+void append_wide_boxes(Chain& chain, const TreeSlots& tree, const WidePlan& plan);
+
 }  // namespace coppice

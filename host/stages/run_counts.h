@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "interface/ploc.h"
+#include "interface/refit.h"
 #include "interface/wide.h"
 
 namespace coppice {
@@ -15,6 +16,7 @@ struct RunCounts {
   std::vector<PlocRound> rounds;  // every entered round, the last with one cluster; empty: no build
   std::uint32_t wide_nodes = 0;
   std::vector<WideLevel> wide_levels;           // all of them; behind them none or empty ones
+  std::vector<RefitLevel> refit_levels;         // the same of refits
   std::uint64_t rays = 0, hits = 0, steps = 0;  // of the whole trace
 };
 

@@ -7,6 +7,7 @@
 #include "interface/hploc.h"
 #include "interface/morton.h"
 #include "interface/ploc.h"
+#include "interface/refit.h"
 #include "interface/scan.h"
 #include "interface/sort.h"
 #include "interface/trace.h"
@@ -47,6 +48,14 @@
   STAGE(wide_sizes_rest, WideSizesRestArgs, NoConstants, exactly)                      \
   STAGE(wide_sizes, WideSizesArgs, NoConstants, exactly)                               \
   STAGE(wide_quantise, WideQuantiseArgs, NoConstants, exactly)                         \
+  STAGE(refit_heights, RefitHeightsArgs, NoConstants, exactly)                         \
+  STAGE(refit_levels, RefitLevelsArgs, NoConstants, exactly)                           \
+  STAGE(refit_absent, RefitAbsentArgs, NoConstants, exactly)                           \
+  STAGE(refit_boxes, RefitBoxesArgs, NoConstants, exactly)                             \
+  STAGE(refit_rest, RefitRestArgs, NoConstants, exactly)                               \
+  STAGE(refit_appeared, RefitAppearedArgs, NoConstants, exactly)                       \
+  STAGE(tree_areas, TreeAreasArgs, NoConstants, exactly)                               \
+  STAGE(tree_area_sum, TreeAreaSumArgs, NoConstants, exactly)                          \
   STAGE(camera_rays, CameraRaysArgs, NoConstants, nearly_rays)                         \
   STAGE(trace_misses, TraceMissesArgs, NoConstants, exactly)                           \
   STAGE(trace_closest, TraceClosestArgs, TraceClosestConstants, nearly_hits)           \

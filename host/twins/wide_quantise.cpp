@@ -46,9 +46,10 @@ void set_box(WideNode& wide, uint child, const Node& node) {
 }
 
 WideNode make_wide_node(const Node& root) {
-  WideNode wide{root.box_min, 0, {}, {}};
+  const bool is_nothing = root.box_min.x > root.box_max.x;  // NOTHING_BOX
+  WideNode wide{is_nothing ? vec3(0) : root.box_min, 0, {}, {}};
   for (int axis = 0; axis < 3; ++axis)
-    wide.exponents |= step_exponent(root.box_min[axis], root.box_max[axis]) << 8 * axis;
+    wide.exponents |= step_exponent(wide.origin[axis], is_nothing ? 0 : root.box_max[axis]) << 8 * axis;
   return wide;
 }
 

@@ -30,8 +30,6 @@ const uint HPLOC_END_LEVEL = 255;  // of what lies before the first and behind t
 // What the child that comes first leaves at its parent's split: its far end and its clusters.
 const uint HPLOC_ARRIVAL_SHIFT = 5;
 
-INTERFACE_COHERENT_BUFFER(CoherentNodeBuffer, Node, 16)
-
 struct HplocBuildArgs {
   READS(AabbBuffer) boxes;   // of the triangles
   READS(UintBuffer) keys;    // Morton codes in ascending order, key_words each, low word first

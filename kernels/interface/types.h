@@ -102,6 +102,7 @@ INTERFACE_COHERENT_BUFFER(CoherentUintBuffer, uint, 4)
 INTERFACE_BUFFER(TriangleBuffer, Triangle, 4)
 INTERFACE_BUFFER(AabbBuffer, Aabb, 8)
 INTERFACE_BUFFER(NodeBuffer, Node, 16)
+INTERFACE_COHERENT_BUFFER(CoherentNodeBuffer, Node, 16)
 
 // Bits of the error word: a kernel that cannot go on sets its bit, the host names the stage
 // (stages/errors.h).
@@ -115,6 +116,7 @@ const uint ERROR_WIDE_TOO_DEEP = 64u;
 const uint ERROR_COUNT = 128u;
 const uint ERROR_BATCH_RANGE = 256u;
 const uint ERROR_RAY_COUNT = 512u;
+const uint ERROR_REFIT_TOO_DEEP = 1024u;
 
 // What the build knows of itself. Zero at the start of a build.
 struct BuildState {

@@ -1,0 +1,166 @@
+#include "pipeline/refit.h"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "stages/divide_up.h"
+#include "stages/stages.h"
+
+namespace coppice {
+
+namespace {
+
+constexpr std::uint32_t height_bits = 8;  // of what refit_heights leaves
+static_assert(REFIT_MAX_HEIGHT == 1u << height_bits && height_bits == SORT_NARROW_BITS);
+static_assert(std::uint64_t{max_triangles} * 2 / REFIT_HEIGHTS_TILE <= 2 * 65535u);
+
+constexpr std::uint32_t most_scanned_tiles = 1024;
+
+std::uint32_t leaves_of(const TreeSlots& tree) {
+  return static_cast<std::uint32_t>((tree.nodes.count + 1) / 2);
+}
+
+// The first `count` entries of an old slot.
+Slot<uint> first_of(const Slot<uint>& old, std::uint64_t count) {
+  check_fits(old, count);
+  return {old.place, count};
+}
+
+void set_tiles(RefitPlan& plan, std::uint32_t pairs) {
+  plan.tile_keys = SORT_SCAN_TILE;
+  while (divide_up(pairs, plan.tile_keys) > most_scanned_tiles) plan.tile_keys *= 2;
+}
+
+// One pass of the radix sort, by heights: what is sorted are the parents.
+void append_sort_by_height(Chain& chain, const RefitPlan& plan) {
+  const auto pairs = static_cast<std::uint32_t>(plan.order.count);
+  const SortScatterArgs args{chain.at(plan.heights[0]),
+                             chain.at(plan.parents),
+                             chain.at(plan.heights[1]),
+                             chain.at(plan.order),
+                             chain.at(plan.tile_digits),
+                             chain.at(plan.sort_state),
+                             chain.at(plan.pair_count),
+                             pairs,
+                             1,
+                             0,
+                             0,
+                             height_bits,
+                             plan.tile_keys};
+  const std::uint32_t tiles = divide_up(pairs, plan.tile_keys);
+  if (tiles > 1) {
+    chain.run(stages::sort_tile_counts, args, {tiles, 1, 1}, {height_bits, 1});
+    chain.run(stages::sort_tile_scan,
+              {args.tile_digits, args.count_at, args.count, plan.tile_keys, height_bits, 0}, {1, 1, 1},
+              {height_bits});
+  }
+  chain.run(stages::sort_scatter, args, {tiles, 1, 1}, {{height_bits, 1}, true, tiles <= 1});
+}
+
+uvec3 rows_of(std::uint32_t count, std::uint32_t size) {
+  const std::uint32_t groups = divide_up(count, size);
+  const std::uint32_t rows = std::max(divide_up(groups, 65535u), 1u);
+  return {divide_up(groups, rows), rows, 1};
+}
+
+}  // namespace
+
+RefitPlan plan_refit(Layout& layout, const TreeSlots& tree, const BuildPlan* finished,
+                     std::uint32_t max_turns) {
+  RefitPlan plan;
+  const std::uint32_t leaves = leaves_of(tree), pairs = leaves == 0 ? 0 : leaves - 1;
+  plan.dispatched_levels = max_turns == 0xffffffffu ? REFIT_DISPATCHED_LEVELS : REFIT_MAX_HEIGHT;
+  plan.state = layout.add<RefitState>("refit_state", 1, Memory::tree);
+  plan.levels = layout.add<RefitLevel>("refit_levels", REFIT_MAX_HEIGHT + 1);
+  plan.absent = layout.add<uint>("refit_absent", divide_up(tree.triangle_count, 32u));
+  plan.pair_count = layout.add<uint>("refit_pair_count", 1);
+  if (finished) {
+    plan.heights[0] = first_of(finished->keys[0], pairs);
+    plan.parents = first_of(finished->values[0], pairs);
+    plan.heights[1] = first_of(finished->keys[1], pairs);
+    plan.order = first_of(finished->values[1], pairs);
+  } else {
+    plan.heights[0] = layout.add<uint>("refit_heights", pairs);
+    plan.parents = layout.add<uint>("refit_parents", pairs);
+    plan.heights[1] = layout.add<uint>("refit_sorted_heights", pairs);
+    plan.order = layout.add<uint>("refit_order", pairs);
+  }
+  set_tiles(plan, pairs);
+  const std::uint32_t most_tiles = std::min(divide_up(pairs, SORT_SCAN_TILE), most_scanned_tiles);
+  plan.tile_digits = layout.add<uint>("refit_tile_digits", std::uint64_t{most_tiles} << height_bits);
+  plan.sort_state = layout.add<BuildState>("refit_sort_state", 1);
+  plan.tile_areas = layout.add<float>(
+      "tree_tile_areas", divide_up(static_cast<std::uint32_t>(tree.nodes.count), TREE_AREAS_TILE));
+  return plan;
+}
+
+RefitPlan with_count(const RefitPlan& plan, std::uint32_t leaves) {
+  RefitPlan fewer = plan;
+  const std::uint32_t pairs = leaves == 0 ? 0 : leaves - 1;
+  for (Slot<uint>* const slot : {&fewer.heights[0], &fewer.heights[1], &fewer.parents, &fewer.order})
+    *slot = first_of(*slot, pairs);
+  set_tiles(fewer, pairs);
+  return fewer;
+}
+
+void append_refit_order(Chain& chain, const TreeSlots& tree, const RefitPlan& plan) {
+  const auto nodes = static_cast<std::uint32_t>(tree.nodes.count);
+  if (nodes == 0) return;
+  chain.run(stages::refit_absent,
+            {chain.at(tree.triangles), chain.at(plan.absent), chain.at(tree.state), tree.triangle_count, 0},
+            groups_of(tree.triangle_count, REFIT_ABSENT_TILE));
+  chain.clear(plan.sort_state);
+  chain.run(stages::refit_heights,
+            {chain.at(tree.nodes), chain.at(plan.heights[0]), chain.at(plan.parents),
+             chain.at(plan.pair_count), chain.at(tree.state), nodes, 0},
+            rows_of(nodes, REFIT_HEIGHTS_TILE));
+  append_sort_by_height(chain, plan);
+  chain.run(stages::refit_levels,
+            {chain.at(plan.heights[1]), chain.at(plan.pair_count), chain.at(plan.levels)}, {1, 1, 1});
+}
+
+void append_refit(Chain& chain, const TreeSlots& tree, const RefitPlan& plan) {
+  chain.clear(plan.state);
+  if (tree.nodes.count == 0) return;
+  chain.run(stages::refit_appeared,
+            {chain.at(tree.triangles), chain.at(plan.absent), chain.at(tree.state), chain.at(plan.state),
+             tree.triangle_count, 0},
+            groups_of(tree.triangle_count, REFIT_ABSENT_TILE));
+  RefitBoxesArgs args{
+      chain.at(tree.nodes), chain.at(tree.triangles), chain.at(plan.order), chain.at(plan.levels), 0, 0};
+  // No tree of so many inner nodes is higher.
+  const auto levels =
+      static_cast<std::uint32_t>(std::min<std::uint64_t>(plan.dispatched_levels, plan.order.count));
+  for (; args.level < levels; ++args.level) {
+    const Place level{plan.levels.place.block, plan.levels.place.offset + args.level * sizeof(RefitLevel) +
+                                                   offsetof(RefitLevel, groups)};
+    chain.run_indirect(stages::refit_boxes, args, level);
+  }
+  chain.run(stages::refit_rest,
+            {args.nodes, args.triangles, args.order, args.levels, chain.at(tree.state), levels, 0},
+            {1, 1, 1});
+}
+
+void append_tree_cost(Chain& chain, const TreeSlots& tree, const RefitPlan& plan) {
+  const auto nodes = static_cast<std::uint32_t>(tree.nodes.count);
+  if (nodes == 0) return;
+  chain.run(stages::tree_areas,
+            {chain.at(tree.nodes), chain.at(plan.tile_areas), chain.at(tree.state), nodes, 0},
+            rows_of(nodes, TREE_AREAS_TILE));
+  chain.run(stages::tree_area_sum,
+            {chain.at(tree.nodes), chain.at(plan.tile_areas), chain.at(tree.state), chain.at(plan.state)},
+            {1, 1, 1});
+}
+
+double sah_cost(const RefitState& state, std::uint32_t leaves) {
+  if (leaves == 0) return 0;
+  if (state.root_area == 0) return 2.0 * leaves - 1;
+  return double{state.area_sum} / double{state.root_area};
+}
+
+double sah_cost_error(std::uint32_t leaves) {
+  const double tiles = 2.0 * leaves / TREE_AREAS_TILE;
+  return 0x1p-24 * (TREE_AREAS_PER_INVOCATION + tiles / TREE_AREAS_GROUP + 40);
+}
+
+}  // namespace coppice

@@ -1,0 +1,22 @@
+#include "interface/refit.h"
+
+namespace coppice::twins {
+
+void refit_heights(const RefitHeightsArgs& args) {
+  args.pair_count[0] = 0;
+  const uint leaves = args.state[0].active_count;
+  if (leaves == 0) return;
+  if (args.nodes[0].height > REFIT_MAX_HEIGHT) {
+    args.state[0].error_word |= ERROR_REFIT_TOO_DEEP;
+    return;
+  }
+  args.pair_count[0] = leaves - 1;
+  for (uint i = 0; i < 2 * leaves - 1; ++i) {
+    const Node& node = args.nodes[i];
+    if (node.height == 0) continue;
+    args.heights[node.child / 2] = node.height - 1;  // the first child's place is odd
+    args.parents[node.child / 2] = i;
+  }
+}
+
+}  // namespace coppice::twins
