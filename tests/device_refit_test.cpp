@@ -25,12 +25,6 @@ namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 
-bool is_active(const Triangle& t) {
-  for (const vec3& corner : {t.a, t.b, t.c}) {
-    if (!std::isfinite(corner.x) || !std::isfinite(corner.y) || !std::isfinite(corner.z)) return false;
-  }
-  return true;
-}
 
 // A tree that is built once and then refitted, kernel by kernel beside its twin.
 class Refitted {

@@ -19,7 +19,8 @@ class BenchCommand : public Command {
     std::vector<std::string> names;
     for (const NamedBench& bench : benches()) names.emplace_back(bench.name);
     app.add_option("WHAT", what_)->required()->check(CLI::IsMember(names));
-    app.add_option("SCENE", options_.scenes, "of the trace; default: grove and hard:detail-on-ground")
+    app.add_option("SCENE", options_.scenes,
+                   "of the trace; default: grove and hard:detail-on-ground; of the refit; default: scatter")
         ->expected(1);
     app.add_option("--most", options_.most, "words, keys or triangles of the largest size")
         ->check(CLI::Range(4u, 1u << 26))
@@ -28,7 +29,7 @@ class BenchCommand : public Command {
         ->type_name("TEXT[,TEXT...]")
         ->delimiter(',');
     app.add_option("--builder", options_.builders,
-                   "of build and trace; default: all for build, gpu-ploc for trace")
+                   "of build, refit and trace; default: all, gpu-ploc for trace")
         ->delimiter(',')
         ->check(CLI::IsMember(device_builder_names()));
     add_runs(app, options_.runs, "that count, after a warm-up until the median is stable");
@@ -40,18 +41,20 @@ class BenchCommand : public Command {
 
   void check(const CLI::App& app) override {
     parse_view(picture_);
-    const bool traces = what_ == "trace", builds = what_ == "build" || traces;
+    const bool traces = what_ == "trace", refits = what_ == "refit";
+    const bool builds = what_ == "build" || refits || traces;
     const bool has_trees = what_ == "ploc" || builds;
-    check_options_matter(app,
-                         {{"SCENE", traces, "bench trace"},
-                          {"--size", traces, "bench trace"},
-                          {"--camera", traces, "bench trace"},
-                          {"--up", traces, "bench trace"},
-                          {"--builder", builds, "bench build or trace"},
-                          {"--radius", has_trees, "bench ploc, build or trace"},
-                          {"--morton-bits", has_trees, "bench ploc, build or trace"},
-                          {"--variants", has_trees || what_ == "sort", "bench sort, ploc, build or trace"},
-                          {"--most", !traces, "bench sort, scan, ploc or build"}});
+    check_options_matter(
+        app, {{"SCENE", traces || refits, "bench trace or refit"},
+              {"--size", traces, "bench trace"},
+              {"--camera", traces, "bench trace"},
+              {"--up", traces || refits, "bench trace or refit"},
+              {"--builder", builds, "bench build, refit or trace"},
+              {"--radius", has_trees, "bench ploc, build, refit or trace"},
+              {"--morton-bits", has_trees, "bench ploc, build, refit or trace"},
+              {"--variants", has_trees || what_ == "sort", "bench sort, ploc, build, refit or trace"},
+              {"--most", !traces && !(refits && !options_.scenes.empty()),
+               "bench sort, scan, ploc, build or refit"}});
   }
 
   std::vector<std::string> scenes() const override { return options_.scenes; }

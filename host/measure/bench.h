@@ -70,6 +70,7 @@ void bench_sort(CheckedDevice& device, const BenchOptions& options, const AddRow
 void bench_scan(CheckedDevice& device, const BenchOptions& options, const AddRow& add);
 void bench_ploc(CheckedDevice& device, const BenchOptions& options, const AddRow& add);
 void bench_build(CheckedDevice& device, const BenchOptions& options, const AddRow& add);
+void bench_refit(CheckedDevice& device, const BenchOptions& options, const AddRow& add);
 void bench_trace(CheckedDevice& device, const BenchOptions& options, const AddRow& add);
 
 // One row of bench_sort; `count` is a multiple of 4, `preset` one of its kinds of keys.
