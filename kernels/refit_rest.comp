@@ -13,11 +13,11 @@ void refit(uint node, uint height) {
   uint pair = args.nodes.at[node].child;
   Node left = args.nodes.at[pair], right = args.nodes.at[pair + 1u];
   if (left.height == 0u) {
-    left = refitted_leaf(left);
+    left = refitted_leaf(left.child);
     args.nodes.at[pair] = left;
   }
   if (right.height == 0u) {
-    right = refitted_leaf(right);
+    right = refitted_leaf(right.child);
     args.nodes.at[pair + 1u] = right;
   }
   args.nodes.at[node] = refitted_parent(left, right, pair, height);
@@ -26,7 +26,7 @@ void refit(uint node, uint height) {
 void main() {
   if (args.state.at[0].active_count == 1u && gl_LocalInvocationIndex == 0u) {
     Node root = args.nodes.at[0];
-    args.nodes.at[0] = refitted_leaf(root);
+    args.nodes.at[0] = refitted_leaf(root.child);
   }
   [[dont_unroll]] for (uint index = args.level; index < REFIT_MAX_HEIGHT; ++index) {
     RefitLevel level = args.levels.at[index];

@@ -88,7 +88,8 @@ class CheckedRefit {
     const auto run = [&] { return recorder.submit_and_wait(measured_limit_seconds).total_ms; };
     BenchRow row =
         bench_row(name, scene, plan_.triangle_count, measure_steady(steady_options(options, run()), run));
-    const KernelSums sums(split_time(*executor_, steps, measured_limit_seconds), counts());
+    const KernelSplit split = split_time(*executor_, steps, measured_limit_seconds);
+    const KernelSums sums(split, counts());
     std::uint64_t bytes = 0;
     for (const KernelSums::Sum& sum : sums.sums()) bytes += sum.bytes * sum.dispatches;
     const auto limit = find_copy_limit(device_, bytes);

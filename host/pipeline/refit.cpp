@@ -10,9 +10,8 @@ namespace coppice {
 
 namespace {
 
-constexpr std::uint32_t height_bits = 8;  // of what refit_heights leaves
-static_assert(REFIT_MAX_HEIGHT == 1u << height_bits && height_bits == SORT_NARROW_BITS);
-static_assert(std::uint64_t{max_triangles} * 2 / REFIT_HEIGHTS_TILE <= 2 * 65535u);
+static_assert(REFIT_MAX_HEIGHT * 4 == 1u << REFIT_KEY_BITS && REFIT_KEY_BITS <= SORT_WIDE_BITS);
+static_assert(std::uint64_t{max_triangles} * 2 / REFIT_KEYS_TILE <= 2 * 65535u);
 
 constexpr std::uint32_t most_scanned_tiles = 1024;
 
@@ -31,12 +30,12 @@ void set_tiles(RefitPlan& plan, std::uint32_t pairs) {
   while (divide_up(pairs, plan.tile_keys) > most_scanned_tiles) plan.tile_keys *= 2;
 }
 
-// One pass of the radix sort, by heights: what is sorted are the parents.
+// One pass of the radix sort, by keys: what is sorted are the parents.
 void append_sort_by_height(Chain& chain, const RefitPlan& plan) {
   const auto pairs = static_cast<std::uint32_t>(plan.order.count);
-  const SortScatterArgs args{chain.at(plan.heights[0]),
+  const SortScatterArgs args{chain.at(plan.keys[0]),
                              chain.at(plan.parents),
-                             chain.at(plan.heights[1]),
+                             chain.at(plan.keys[1]),
                              chain.at(plan.order),
                              chain.at(plan.tile_digits),
                              chain.at(plan.sort_state),
@@ -45,16 +44,16 @@ void append_sort_by_height(Chain& chain, const RefitPlan& plan) {
                              1,
                              0,
                              0,
-                             height_bits,
+                             REFIT_KEY_BITS,
                              plan.tile_keys};
   const std::uint32_t tiles = divide_up(pairs, plan.tile_keys);
   if (tiles > 1) {
-    chain.run(stages::sort_tile_counts, args, {tiles, 1, 1}, {height_bits, 1});
+    chain.run(stages::sort_tile_counts, args, {tiles, 1, 1}, {REFIT_KEY_BITS, 1});
     chain.run(stages::sort_tile_scan,
-              {args.tile_digits, args.count_at, args.count, plan.tile_keys, height_bits, 0}, {1, 1, 1},
-              {height_bits});
+              {args.tile_digits, args.count_at, args.count, plan.tile_keys, REFIT_KEY_BITS, 0}, {1, 1, 1},
+              {REFIT_KEY_BITS});
   }
-  chain.run(stages::sort_scatter, args, {tiles, 1, 1}, {{height_bits, 1}, true, tiles <= 1});
+  chain.run(stages::sort_scatter, args, {tiles, 1, 1}, {{REFIT_KEY_BITS, 1}, true, tiles <= 1});
 }
 
 uvec3 rows_of(std::uint32_t count, std::uint32_t size) {
@@ -75,19 +74,19 @@ RefitPlan plan_refit(Layout& layout, const TreeSlots& tree, const BuildPlan* fin
   plan.absent = layout.add<uint>("refit_absent", divide_up(tree.triangle_count, 32u));
   plan.pair_count = layout.add<uint>("refit_pair_count", 1);
   if (finished) {
-    plan.heights[0] = first_of(finished->keys[0], pairs);
+    plan.keys[0] = first_of(finished->keys[0], pairs);
     plan.parents = first_of(finished->values[0], pairs);
-    plan.heights[1] = first_of(finished->keys[1], pairs);
+    plan.keys[1] = first_of(finished->keys[1], pairs);
     plan.order = first_of(finished->values[1], pairs);
   } else {
-    plan.heights[0] = layout.add<uint>("refit_heights", pairs);
+    plan.keys[0] = layout.add<uint>("refit_keys", pairs);
     plan.parents = layout.add<uint>("refit_parents", pairs);
-    plan.heights[1] = layout.add<uint>("refit_sorted_heights", pairs);
+    plan.keys[1] = layout.add<uint>("refit_sorted_keys", pairs);
     plan.order = layout.add<uint>("refit_order", pairs);
   }
   set_tiles(plan, pairs);
   const std::uint32_t most_tiles = std::min(divide_up(pairs, SORT_SCAN_TILE), most_scanned_tiles);
-  plan.tile_digits = layout.add<uint>("refit_tile_digits", std::uint64_t{most_tiles} << height_bits);
+  plan.tile_digits = layout.add<uint>("refit_tile_digits", std::uint64_t{most_tiles} << REFIT_KEY_BITS);
   plan.sort_state = layout.add<BuildState>("refit_sort_state", 1);
   plan.tile_areas = layout.add<float>(
       "tree_tile_areas", divide_up(static_cast<std::uint32_t>(tree.nodes.count), TREE_AREAS_TILE));
@@ -97,7 +96,7 @@ RefitPlan plan_refit(Layout& layout, const TreeSlots& tree, const BuildPlan* fin
 RefitPlan with_count(const RefitPlan& plan, std::uint32_t leaves) {
   RefitPlan fewer = plan;
   const std::uint32_t pairs = leaves == 0 ? 0 : leaves - 1;
-  for (Slot<uint>* const slot : {&fewer.heights[0], &fewer.heights[1], &fewer.parents, &fewer.order})
+  for (Slot<uint>* const slot : {&fewer.keys[0], &fewer.keys[1], &fewer.parents, &fewer.order})
     *slot = first_of(*slot, pairs);
   set_tiles(fewer, pairs);
   return fewer;
@@ -110,13 +109,13 @@ void append_refit_order(Chain& chain, const TreeSlots& tree, const RefitPlan& pl
             {chain.at(tree.triangles), chain.at(plan.absent), chain.at(tree.state), tree.triangle_count, 0},
             groups_of(tree.triangle_count, REFIT_ABSENT_TILE));
   chain.clear(plan.sort_state);
-  chain.run(stages::refit_heights,
-            {chain.at(tree.nodes), chain.at(plan.heights[0]), chain.at(plan.parents),
-             chain.at(plan.pair_count), chain.at(tree.state), nodes, 0},
-            rows_of(nodes, REFIT_HEIGHTS_TILE));
+  chain.run(stages::refit_keys,
+            {chain.at(tree.nodes), chain.at(plan.keys[0]), chain.at(plan.parents), chain.at(plan.pair_count),
+             chain.at(tree.state), nodes, 0},
+            rows_of(nodes, REFIT_KEYS_TILE));
   append_sort_by_height(chain, plan);
-  chain.run(stages::refit_levels,
-            {chain.at(plan.heights[1]), chain.at(plan.pair_count), chain.at(plan.levels)}, {1, 1, 1});
+  chain.run(stages::refit_levels, {chain.at(plan.keys[1]), chain.at(plan.pair_count), chain.at(plan.levels)},
+            {1, 1, 1});
 }
 
 void append_refit(Chain& chain, const TreeSlots& tree, const RefitPlan& plan) {

@@ -11,13 +11,13 @@ struct RefitPlan {
   Slot<RefitState> state;               // of the last refit
 
   // Kept from append_refit_order on as long as the tree is refitted.
-  Slot<uint> order;  // inner nodes by ascending height
+  Slot<uint> order;  // inner nodes by ascending key
   Slot<RefitLevel> levels;
   Slot<uint> absent;      // a bit for each triangle that has no leaf; as good as empty where all have one
   Slot<uint> pair_count;  // inner nodes
 
   // Scratch.
-  Slot<uint> heights[2], parents;  // heights[1] in order
+  Slot<uint> keys[2], parents;  // keys[1] in order
   Slot<uint> tile_digits;
   std::uint32_t tile_keys = 0;
   Slot<BuildState> sort_state;

@@ -32,7 +32,7 @@ std::string describe_error_word(std::uint32_t error_word) {
        "batch_build: a range has more primitives than a tree of a batch, or lies beyond the last of them"},
       {ERROR_RAY_COUNT, "a trace: the count of rays on the device is larger than what was planned for"},
       {ERROR_WIDE_TOO_DEEP, "wide_root: the tree is deeper than the conversion to wide nodes takes"},
-      {ERROR_REFIT_TOO_DEEP, "refit_heights: the tree is deeper than a refit takes"},
+      {ERROR_REFIT_TOO_DEEP, "refit_keys: the tree is deeper than a refit takes"},
   };
   std::string description;
   const auto add = [&](const char* meaning) {

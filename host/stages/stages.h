@@ -48,7 +48,7 @@
   STAGE(wide_sizes_rest, WideSizesRestArgs, NoConstants, exactly)                      \
   STAGE(wide_sizes, WideSizesArgs, NoConstants, exactly)                               \
   STAGE(wide_quantise, WideQuantiseArgs, NoConstants, exactly)                         \
-  STAGE(refit_heights, RefitHeightsArgs, NoConstants, exactly)                         \
+  STAGE(refit_keys, RefitKeysArgs, NoConstants, exactly)                               \
   STAGE(refit_levels, RefitLevelsArgs, NoConstants, exactly)                           \
   STAGE(refit_absent, RefitAbsentArgs, NoConstants, exactly)                           \
   STAGE(refit_boxes, RefitBoxesArgs, NoConstants, exactly)                             \

@@ -38,7 +38,7 @@ Bytes refitted_bytes(std::uint32_t level, const RunCounts& counts) {
 
 }  // namespace
 
-Bytes refit_heights(const RefitHeightsArgs&, const RunCounts& counts) {
+Bytes refit_keys(const RefitKeysArgs&, const RunCounts& counts) {
   return nodes_of_tree(counts) * sizeof(Node) + inner_nodes(counts) * 8;
 }
 

@@ -15,9 +15,9 @@ const uint REFIT_MAX_HEIGHT = 256;  // of a tree
 // robust box test grows with the box.
 const float NOTHING_BOX = 3.402823466e38;
 
-const uint REFIT_HEIGHTS_GROUP = 64;
-const uint REFIT_HEIGHTS_PER_INVOCATION = 16;
-const uint REFIT_HEIGHTS_TILE = REFIT_HEIGHTS_GROUP * REFIT_HEIGHTS_PER_INVOCATION;  // nodes
+const uint REFIT_KEYS_GROUP = 64;
+const uint REFIT_KEYS_PER_INVOCATION = 16;
+const uint REFIT_KEYS_TILE = REFIT_KEYS_GROUP * REFIT_KEYS_PER_INVOCATION;  // nodes
 const uint REFIT_GROUP = 64;
 const uint REFIT_PER_INVOCATION = 4;
 const uint REFIT_TILE = REFIT_GROUP * REFIT_PER_INVOCATION;  // inner nodes
@@ -29,12 +29,21 @@ const uint REFIT_ABSENT_TILE = REFIT_ABSENT_GROUP * 32;  // triangles, 32 an inv
 // takes in turn (refit_rest).
 const uint REFIT_DISPATCHED_LEVELS = 24;
 
-// The inner nodes of one height: `count` of the order, from `first` on. That of height h is level h - 1.
+// The order of a refit goes by keys of the height - 1, times four, and the kind of the children.
+const uint REFIT_KEY_BITS = 10;
+const uint REFIT_TWO_LEAVES = 0;  // those of height 1 and no others
+const uint REFIT_LEFT_LEAF = 1;   // the other child is an inner node
+const uint REFIT_RIGHT_LEAF = 2;
+const uint REFIT_NO_LEAF = 3;
+
+// The inner nodes of one height: `count` of the order, from `first` on. That of height h is level h - 1. In
+// all but level 0 come first those whose left child is a leaf, up to the place `left_end`, counted from
+// `first`, then, up to `right_end`, those whose right one is; the others have none.
 struct RefitLevel {
   uint first, count;
-  uint padding0, padding1;
+  uint left_end, right_end;
   uvec3 groups;  // of a dispatch over them
-  uint padding2;
+  uint padding;
 };
 
 // What a refit found; zero before.
@@ -50,9 +59,9 @@ INTERFACE_BUFFER(RefitStateBuffer, RefitState, 16)
 INTERFACE_BUFFER(FloatBuffer, float, 4)
 
 // By the pair of its children: the first pair, k = 0, stands at nodes 1 and 2.
-struct RefitHeightsArgs {
+struct RefitKeysArgs {
   READS(NodeBuffer) nodes;  // 2 * active_count - 1
-  UintBuffer heights;       // out, active_count - 1: of each pair its parent's height - 1
+  UintBuffer keys;          // out, active_count - 1: of each pair the key of its parent
   UintBuffer parents;       // out, active_count - 1: of each pair its parent
   UintBuffer pair_count;    // out, one word: active_count - 1; 0 for a tree that is too high
   BuildStateBuffer state;   // a tree higher than REFIT_MAX_HEIGHT sets ERROR_REFIT_TOO_DEEP
@@ -61,7 +70,7 @@ struct RefitHeightsArgs {
 };
 
 struct RefitLevelsArgs {
-  READS(UintBuffer) heights;     // pair_count, in ascending order
+  READS(UintBuffer) keys;        // pair_count, in ascending order
   READS(UintBuffer) pair_count;  // one word
   RefitLevelBuffer levels;       // out, REFIT_MAX_HEIGHT + 1: the last one is empty
 };
@@ -86,7 +95,7 @@ struct RefitAppearedArgs {
 struct RefitBoxesArgs {
   NodeBuffer nodes;
   READS(TriangleBuffer) triangles;
-  READS(UintBuffer) order;  // inner nodes by ascending height
+  READS(UintBuffer) order;  // inner nodes by ascending key
   READS(RefitLevelBuffer) levels;
   uint level;
   uint padding;
