@@ -191,6 +191,64 @@ TEST_F(MovingFramesTest, AreTheSameBitsInAnyOrderAndWithAnyNumberUnderWay) {
   EXPECT_NE(hashes[0][1], hashes[0][2]);
 }
 
+// Whatever the tree is, the picture is the same; and a refitted tree costs no less than a new one.
+TEST_F(MovingFramesTest, AreTheSamePicturesByRefits) {
+  for (const Scene& scene : {make_moving(2000), all_that_moves(60)}) {
+    for (const Walk walk : {Walk::binary, Walk::wide_packets, Walk::wide_single}) {
+      MovingOptions options = options_for(walk);
+      MovingFrames built(test_device(), scene, options);
+      for (const Update update : {Update::refit, Update::automatic}) {
+        options.update = update;
+        options.tree_cost = true;
+        MovingFrames refitted(test_device(), scene, options);
+        const Film film = film_of(scene, options);
+        for (int frame = 0; frame < 5; ++frame) {
+          refitted.submit(0.3 * frame, film);
+          const MovingFrame left = refitted.take();
+          EXPECT_EQ(left.submits, 1u);
+          if (update == Update::refit) {
+            EXPECT_EQ(left.rebuilt, frame == 0);
+          }
+          EXPECT_GT(left.sah, 1);
+          EXPECT_EQ(image_hash(left.image), image_hash(frame_at(built, 0.3 * frame, film))) << frame;
+        }
+      }
+    }
+  }
+}
+
+// A tree that was built while a triangle was not there has no leaf for it.
+TEST_F(MovingFramesTest, AreBuiltWhereTrianglesAppear) {
+  Scene scene = all_that_moves(2);
+  auto motion = std::make_shared<Motion>();
+  motion->rest = scene.positions;
+  const auto vertices = static_cast<std::uint32_t>(scene.positions.size());
+  VertexSequence sequence{.vertices = {0, vertices}, .frames_per_second = 1};
+  for (std::uint32_t frame = 0; frame < 6; ++frame) {
+    for (std::uint32_t v = 0; v < vertices; ++v)
+      sequence.positions.push_back(v / 3 == 1 && frame < 2 ? glm::vec3{std::nanf("")} : scene.positions[v]);
+  }
+  motion->sequences = {sequence};
+  scene.motion = motion;
+  MovingOptions options = options_for(Walk::wide_packets);
+  options.update = Update::refit;
+  MovingFrames frames(test_device(), scene, options);
+  options.update = Update::rebuild;
+  MovingFrames built(test_device(), scene, options);
+  const Film film = film_of(scene, options);
+  std::vector<std::uint32_t> submits;
+  frames.submit(0, film);
+  for (int frame = 0; frame < 6; ++frame) {
+    if (frame < 5) frames.submit(frame + 1, film);
+    const MovingFrame left = frames.take();
+    submits.push_back(left.submits);
+    EXPECT_EQ(left.state.active_count, vertices / 3 - (frame < 2)) << frame;
+    EXPECT_EQ(image_hash(left.image), image_hash(frame_at(built, frame, film))) << frame;
+  }
+  // Frame 3 was on its way when frame 2 was found to need a build.
+  EXPECT_EQ(submits, (std::vector<std::uint32_t>{1, 1, 2, 2, 1, 1}));
+}
+
 TEST_F(MovingFramesTest, RefuseWhatHasNoRoom) {
   const Scene scene = make_moving(50);
   MovingOptions options = options_for(Walk::binary);

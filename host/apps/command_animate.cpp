@@ -66,12 +66,19 @@ class AnimateCommand : public Command {
     app.add_option("--frames", frames_text_, "N: frames 0 to N - 1; A..B: frames A to B, both of them")
         ->type_name("N|A..B")
         ->capture_default_str();
-    app.add_option("-o,--directory", folder_, "write pictures DIR/frame_00000.png and so on")->type_name("DIR");
+    app.add_option("-o,--directory", folder_, "write pictures DIR/frame_00000.png and so on")
+        ->type_name("DIR");
     app.add_flag("--skip-existing", skip_existing_, "leave out frames whose picture is in DIR");
     app.add_option("--fps", frames_per_second_, "frames a second of the scene (default: the scene's)")
         ->check(CLI::Range(0.001, 100000.0));
     app.add_option("--video", video_, "then make FILE.mp4 or FILE.webp of the pictures, by ffmpeg")
         ->type_name("FILE");
+    app.add_option("--update", update_, "build each tree anew, refit the first one, or what costs less")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, Update>{
+            {"rebuild", Update::rebuild}, {"refit", Update::refit}, {"auto", Update::automatic}}))
+        ->type_name("rebuild|refit|auto")
+        ->default_str("rebuild");
+    app.add_flag("--tree-cost", tree_cost_, "the SAH cost of every frame's tree; --plot and --csv imply it");
     app.add_option("--plot", files.plot, "curves over the frames, as SVG")->type_name("FILE");
     app.add_option("--csv", files.csv, "every frame, comma-separated")->type_name("FILE");
     app.add_flag("--kernels", kernels_, "print the time of every kernel of one frame");
@@ -101,6 +108,8 @@ class AnimateCommand : public Command {
     const Scene scene = open_scene_of(scene_, builder_, device_, true);
     if (!scene.motion) print_note("nothing moves in scene '" + scene.name + "': all frames are the same");
     AnimateRuns runs{.builder = builder_, .trace = picture_.trace, .camera = picture_.camera};
+    runs.update = update_;
+    runs.tree_cost = tree_cost_ || !files.plot.empty() || !files.csv.empty();
     runs.first = first_;
     runs.last = last_;
     runs.frames_per_second = frames_per_second_ > 0 ? frames_per_second_
@@ -197,7 +206,8 @@ class AnimateCommand : public Command {
   std::string frames_text_ = "120", folder_, video_;
   std::uint32_t first_ = 0, last_ = 0;
   double frames_per_second_ = 0;  // 0: the scene's
-  bool skip_existing_ = false, kernels_ = false;
+  Update update_ = Update::rebuild;
+  bool tree_cost_ = false, skip_existing_ = false, kernels_ = false;
   SceneOptions scene_{.spec = "moving"};
   PictureOptions picture_;
   BuilderChoice builder_;

@@ -43,15 +43,16 @@ class FrameLoop {
  private:
   void take() {
     const MovingFrame frame = frames_.take();
-    ++report_.host_waits;
-    ++report_.rebuilds;
+    report_.host_waits += frame.submits;
+    ++(frame.rebuilt ? report_.rebuilds : report_.refits);
     const auto now = AnimateClock::now();
     const std::uint32_t number = under_way_.front();
     under_way_.pop_front();
     report_.frames.push_back({number, std::chrono::duration<double, std::milli>(now - last_done_).count(),
-                              frame.vertices_ms, frame.build_ms, frame.wide_ms, frame.trace_ms,
-                              frame.total_ms, frame.state.active_count, frame.counts.rays, frame.counts.hits,
-                              frame.counts.steps, image_hash(frame.image)});
+                              frame.vertices_ms, frame.update_ms, frame.wide_ms, frame.trace_ms,
+                              frame.total_ms, frame.rebuilt, frame.sah, frame.state.active_count,
+                              frame.counts.rays, frame.counts.hits, frame.counts.steps,
+                              image_hash(frame.image)});
     last_done_ = now;
     if (runs_.picture) runs_.picture(number, frame.image);
   }
@@ -107,8 +108,12 @@ AnimateReport animate(CheckedDevice& device, const Scene& scene, const AnimateRu
   report.height = runs.trace.height;
   report.walks_wide = is_wide(runs.trace.walk);
   report.frames_per_second = runs.frames_per_second;
+  report.update = runs.update;
+  report.tree_cost = runs.tree_cost;
   const MovingOptions options{.build = device.build_options(runs.builder.build_options(report.morton_bits)),
-                              .trace = runs.trace};
+                              .trace = runs.trace,
+                              .update = runs.update,
+                              .tree_cost = runs.tree_cost};
   MovingFrames frames(device.device(), scene, options);
   report.device_bytes = device_bytes(frames.layout());
   const InterruptionGuard guard;

@@ -16,6 +16,8 @@ namespace coppice {
 struct AnimateRuns {
   BuilderChoice builder{};
   TraceOptions trace{};
+  Update update = Update::rebuild;
+  bool tree_cost = false;        // the SAH cost of every frame's tree
   std::vector<double> camera{};  // see given_view; empty: the scene's, as it moves
   std::uint32_t first = 0, last = 0;
   double frames_per_second = 30;
@@ -31,7 +33,9 @@ struct AnimateRuns {
 struct AnimatedFrame {
   std::uint32_t number;
   double frame_ms;  // since the one before was done; of the first one its submit
-  double vertices_ms, build_ms, wide_ms, trace_ms, device_ms;
+  double vertices_ms, update_ms, wide_ms, trace_ms, device_ms;
+  bool rebuilt;
+  double sah;  // 0 unless asked for
   std::uint32_t active_count;
   std::uint64_t rays, hits, steps;
   std::uint64_t hash;  // of the picture
@@ -43,6 +47,8 @@ struct AnimateReport {
   std::uint32_t morton_bits = 30, width = 0, height = 0;
   bool walks_wide = false;
   double frames_per_second = 0;
+  Update update = Update::rebuild;
+  bool tree_cost = false;
   std::vector<AnimatedFrame> frames;
   std::uint32_t skipped = 0;
   std::uint64_t host_waits = 0, rebuilds = 0, refits = 0, device_bytes = 0;
@@ -55,6 +61,9 @@ AnimateReport animate(CheckedDevice& device, const Scene& scene, const AnimateRu
 
 // The film of that time: by `camera`, or the camera that moves, or the scene's.
 Film film_at(const Scene& scene, double seconds, std::span<const double> camera, const TraceOptions& trace);
+
+// As --update has it.
+const char* word_of_update(Update update);
 
 Json to_json(const AnimateReport& report);
 std::string text_of(const AnimateReport& report);

@@ -44,7 +44,7 @@ constexpr TimedPart timed_parts[] = {
     {"frame", "from picture to picture, by the host's clock", &AnimatedFrame::frame_ms},
     {"device", "of it on the device: one submit", &AnimatedFrame::device_ms},
     {"vertices", "to where they are", &AnimatedFrame::vertices_ms},
-    {"build", "triangles to tree", &AnimatedFrame::build_ms},
+    {"build", "triangles to tree, built or refitted", &AnimatedFrame::update_ms},
     {"wide", "the tree with eight children a node", &AnimatedFrame::wide_ms},
     {"trace", "camera rays to picture", &AnimatedFrame::trace_ms}};
 
@@ -56,18 +56,25 @@ std::string csv_of_frames(const AnimateReport& report) {
                {.key = "build_ms", .precision = 3, .places = IN_CSV},
                {.key = "wide_ms", .precision = 3, .places = IN_CSV},
                {.key = "trace_ms", .precision = 3, .places = IN_CSV},
+               {.key = "rebuilt", .places = IN_CSV},
+               {.key = "sah", .precision = 4, .places = IN_CSV},
                {.key = "active", .places = IN_CSV},
                {.key = "hits", .places = IN_CSV},
                {.key = "steps", .places = IN_CSV},
                {.key = "image_hash", .places = IN_CSV, .quoted = false}});
   for (const AnimatedFrame& f : report.frames) {
-    table.add({{std::uint64_t{f.number}, f.frame_ms, f.device_ms, f.vertices_ms, f.build_ms, f.wide_ms,
-                f.trace_ms, std::uint64_t{f.active_count}, f.hits, f.steps, hex16(f.hash)}});
+    table.add({{std::uint64_t{f.number}, f.frame_ms, f.device_ms, f.vertices_ms, f.update_ms, f.wide_ms,
+                f.trace_ms, std::uint64_t{f.rebuilt}, report.tree_cost ? Cell(f.sah) : Cell(),
+                std::uint64_t{f.active_count}, f.hits, f.steps, hex16(f.hash)}});
   }
   return table.csv();
 }
 
 }  // namespace
+
+const char* word_of_update(Update update) {
+  return update == Update::rebuild ? "rebuild" : update == Update::refit ? "refit" : "auto";
+}
 
 Json to_json(const AnimateReport& report) {
   Json hashes = Json::array(), numbers = Json::array();
@@ -88,11 +95,15 @@ Json to_json(const AnimateReport& report) {
                {"frames_per_second", report.frames_per_second},
                {"frames", report.frames.size()},
                {"skipped", report.skipped},
-               {"update", "rebuild"}};
+               {"update", word_of_update(report.update)}};
   for (const TimedPart& part : timed_parts)
     json[std::string(part.name) + "_ms"] = percentiles(report, part.value);
   const auto frames = static_cast<double>(std::max<std::size_t>(report.frames.size(), 1));
   json["host_waits_per_frame"] = static_cast<double>(report.host_waits) / frames;
+  if (report.tree_cost) {
+    json["sah"] = Json::array();
+    for (const AnimatedFrame& frame : report.frames) json["sah"].push_back(frame.sah);
+  }
   json["rebuilds"] = report.rebuilds;
   json["refits"] = report.refits;
   json["frame_numbers"] = numbers;
@@ -108,6 +119,9 @@ std::string text_of(const AnimateReport& report) {
                             report.scene.c_str(), static_cast<unsigned long long>(report.triangles),
                             report.frames.size(), report.width, report.height, report.builder.c_str(),
                             report.device.c_str(), report.walks_wide ? "wide" : "binary");
+  text += format("  --update %s: %llu trees built, %llu refitted\n", word_of_update(report.update),
+                 static_cast<unsigned long long>(report.rebuilds),
+                 static_cast<unsigned long long>(report.refits));
   if (report.skipped) text += format("  %u frames are there already\n", report.skipped);
   if (report.frames.empty()) return text;
   Table table({{.heading = "ms", .width = -10, .gap = 2},
@@ -136,7 +150,12 @@ std::string to_svg(const AnimateReport& report) {
   for (const TimedPart& part : timed_parts)
     times.curves.push_back({part.name, values_of(report, part.value)});
   const double first = report.frames.empty() ? 0 : report.frames.front().number;
-  return to_svg(report.scene + ", " + report.builder + " on " + report.device, "frame", first, {times});
+  std::vector<CurvePanel> panels = {times};
+  if (report.tree_cost)
+    panels.push_back({"SAH cost", {{"of the tree", values_of(report, &AnimatedFrame::sah)}}});
+  return to_svg(report.scene + ", " + report.builder + " on " + report.device + ", --update " +
+                    word_of_update(report.update),
+                "frame", first, panels);
 }
 
 }  // namespace coppice

@@ -40,14 +40,6 @@ void check(const GivenBoxes& input) {
   check_stride("stride of boxes", input.stride, sizeof(Aabb));
 }
 
-void append_gather(Chain& chain, const PrimitiveSlots& slots, const VertexTriangles& input,
-                   UintBuffer count_at) {
-  chain.run(stages::gather_triangles,
-            {input.vertices, input.indices, input.transform, chain.at(slots.triangles), count_at, slots.count,
-             input.vertex_count, input.vertex_stride, input.first_vertex, input.index_bytes, 0},
-            groups_of(slots.count, GATHER_TRIANGLES_TILE));
-}
-
 }  // namespace
 
 PrimitiveSlots plan_primitives(Layout& layout, std::uint32_t count, PrimitiveKind kind) {
@@ -62,6 +54,16 @@ PrimitiveSlots plan_primitives(Layout& layout, std::uint32_t count, PrimitiveKin
 
 uvec3 counted_groups(std::uint32_t count, std::uint32_t size, UintBuffer count_at) {
   return {std::max(divide_up(count, size), count_at.value ? 1u : 0u), 1, 1};
+}
+
+void append_triangles(Chain& chain, const Slot<Triangle>& triangles, const VertexTriangles& input,
+                      UintBuffer count_at) {
+  check(input);
+  const auto count = static_cast<std::uint32_t>(triangles.count);
+  chain.run(stages::gather_triangles,
+            {input.vertices, input.indices, input.transform, chain.at(triangles), count_at, count,
+             input.vertex_count, input.vertex_stride, input.first_vertex, input.index_bytes, 0},
+            groups_of(count, GATHER_TRIANGLES_TILE));
 }
 
 void append_primitives(Chain& chain, const PrimitiveSlots& slots, const BuildInput& input) {
@@ -79,7 +81,7 @@ void append_primitives(Chain& chain, const PrimitiveSlots& slots, const BuildInp
     return;
   }
   if (const auto* const vertices = std::get_if<VertexTriangles>(&input.primitives))
-    append_gather(chain, slots, *vertices, input.count_at);
+    append_triangles(chain, {slots.triangles.place, slots.count}, *vertices, input.count_at);
   chain.run(stages::primitive_bounds,
             {chain.at(slots.triangles), chain.at(slots.boxes), chain.at(slots.state), input.count_at,
              slots.count, 0},

@@ -58,6 +58,10 @@ PrimitiveSlots plan_primitives(Layout& layout, std::uint32_t count, PrimitiveKin
 // say that it is too large.
 uvec3 counted_groups(std::uint32_t count, std::uint32_t size, UintBuffer count_at);
 
+// Others' triangles into a slot of so many. Throws std::invalid_argument as append_primitives.
+void append_triangles(Chain& chain, const Slot<Triangle>& triangles, const VertexTriangles& input,
+                      UintBuffer count_at = {});
+
 // To boxes, the scene's box and the number of active primitives. Throws std::invalid_argument for addresses
 // and strides that no kernel reads, and for triangles where boxes were planned or the other way round.
 void append_primitives(Chain& chain, const PrimitiveSlots& slots, const BuildInput& input);

@@ -18,8 +18,8 @@ void append_copy_out(Chain& chain, const Slot<T>& from, const Slot<T>& to) {
             {1, 1, 1});
 }
 
-TraceOptions trace_options_of(const Scene& scene, TraceOptions options) {
-  options.directional_light = scene.light.radiance != vec3(0);
+MovingOptions for_scene(MovingOptions options, const Scene& scene) {
+  options.trace.directional_light = scene.light.radiance != vec3(0);
   return options;
 }
 
@@ -30,28 +30,36 @@ FramePlan MovingFrames::plan_all(MovingFrames& frames, const SceneArrays& arrays
   frames.vertices_ = plan_vertices(layout, frames.motion_, arrays.triangle_count());
   const FrameOptions options{.build = frames.options_.build, .trace = frames.options_.trace};
   FramePlan plan = plan_frame(layout, arrays, options);
+  if (frames.has_state())
+    frames.refit_ = plan_refit(layout, plan.tree, &*plan.build, frames.options_.trace.max_turns);
   for (std::uint32_t i = 0; i < frames.options_.under_way; ++i) {
     frames.slots_.push_back({{plan_motion(layout, frames.motion_), layout.add_mapped<Film>("film_told", 1)},
                              {layout.add_mapped<uint>("image_left", plan.trace.image.count),
                               layout.add_mapped<BuildState>("state_left", 1),
-                              layout.add_mapped<TraceCounters>("counters_left", 1)}});
+                              layout.add_mapped<TraceCounters>("counters_left", 1),
+                              layout.add_mapped<RefitState>("refit_left", 1)}});
   }
   return plan;
 }
 
 MovingFrames::MovingFrames(Device& device, const Scene& scene, const MovingOptions& options)
     : motion_(motion_of(scene)),
-      options_{options.build, trace_options_of(scene, options.trace), options.under_way},
+      options_(for_scene(options, scene)),
       layout_(device.properties().max_block_bytes),
       plan_(plan_all(*this, scene_arrays(scene))),
-      executor_(device, layout_) {
+      executor_(device, layout_),
+      chooser_(options.update) {
   if (options_.under_way == 0) throw std::invalid_argument("no frame may be under way");
   upload_frame(executor_, plan_.tree, plan_.trace, scene_arrays(scene), Film{});
   upload_vertices(executor_, vertices_, motion_, std::span<const uvec3>(scene.indices));
-  for (const FrameSlots& slots : slots_) {
+  const auto record = [&](const FrameSlots& slots, bool rebuilds) {
     Chain chain = executor_.chain();
-    append(chain, slots);
-    recorders_.push_back(executor_.record(chain.steps()));
+    append(chain, slots, rebuilds);
+    return executor_.record(chain.steps());
+  };
+  for (const FrameSlots& slots : slots_) {
+    builds_.push_back(record(slots, true));
+    if (may_refit()) refits_.push_back(record(slots, false));
   }
 }
 
@@ -64,24 +72,38 @@ MovingFrames::~MovingFrames() {
   }
 }
 
-void MovingFrames::append(Chain& chain, const FrameSlots& slots) const {
+void MovingFrames::append_update(Chain& chain, bool rebuilds) const {
+  const TreeSlots& tree = plan_.tree;
+  if (rebuilds) {
+    append_build(chain, *plan_.build, {triangles_of(chain, vertices_), {}});
+    if (may_refit()) append_refit_order(chain, tree, refit_);
+  } else {
+    append_triangles(chain, tree.triangles, triangles_of(chain, vertices_));
+    append_refit(chain, tree, refit_);
+  }
+  chain.mark();
+  if (plan_.wide && rebuilds) append_wide(chain, tree, *plan_.wide);
+  if (plan_.wide && !rebuilds) append_wide_boxes(chain, tree, *plan_.wide);
+  if (options_.tree_cost) append_tree_cost(chain, tree, refit_);
+  chain.mark();
+}
+
+void MovingFrames::append(Chain& chain, const FrameSlots& slots, bool rebuilds) const {
   append_vertices(chain, vertices_, slots.told.motion, motion_);
   chain.mark();
-  append_build(chain, *plan_.build, {triangles_of(chain, vertices_), {}});
-  chain.mark();
-  append_frame_wide(chain, plan_);
-  chain.mark();
+  append_update(chain, rebuilds);
   TracePlan trace = plan_.trace;
   trace.film = slots.told.film;
   trace.image = slots.left.image;
   append_trace(chain, plan_.tree, trace);
   append_copy_out(chain, plan_.tree.state, slots.left.state);
   append_copy_out(chain, trace.counters, slots.left.counters);
+  if (has_state()) append_copy_out(chain, refit_.state, slots.left.refit);
 }
 
-std::vector<Step> MovingFrames::steps() const {
+std::vector<Step> MovingFrames::steps(bool rebuilds) const {
   Chain chain = executor_.chain();
-  append(chain, slots_.front());
+  append(chain, slots_.front(), rebuilds);
   return std::move(chain.steps());
 }
 
@@ -90,8 +112,9 @@ void MovingFrames::submit(double seconds, const Film& film) {
   const FrameSlots& slots = slots_[next_slot_];
   upload_step(executor_, slots.told.motion, motion_step(motion_, pose_at(motion_, seconds), seconds));
   executor_.upload(slots.told.film, std::span<const Film>(&film, 1));
-  recorders_[next_slot_].submit();
-  waiting_.push_back({next_slot_, seconds});
+  const bool rebuilds = !chooser_.next_refits();
+  (rebuilds ? builds_ : refits_)[next_slot_].submit();
+  waiting_.push_back({next_slot_, seconds, rebuilds});
   next_slot_ = (next_slot_ + 1) % slots_.size();
 }
 
@@ -100,28 +123,49 @@ const T* MovingFrames::mapped(const Slot<T>& slot) {
   return reinterpret_cast<const T*>(executor_.arena().mapped(slot.place.block) + slot.place.offset);
 }
 
-MovingFrame MovingFrames::take() {
-  if (waiting_.empty()) throw std::logic_error("no frame is under way");
-  const Waiting waiting = waiting_.front();
-  const Recorder::Times times = recorders_[waiting.slot].wait(piece_limit_seconds);
-  waiting_.pop_front();
-  const Left& left = slots_[waiting.slot].left;
+MovingFrame MovingFrames::outcome(const Recorder::Times& times, const Left& left) {
   MovingFrame frame;
-  frame.seconds = waiting.seconds;
   frame.total_ms = times.total_ms;
   frame.wall_ms = times.wall_ms;
   if (!times.marks_ms.empty()) {
     frame.vertices_ms = times.marks_ms[0];
-    frame.build_ms = times.marks_ms[1] - times.marks_ms[0];
+    frame.update_ms = times.marks_ms[1] - times.marks_ms[0];
     frame.wide_ms = times.marks_ms[2] - times.marks_ms[1];
     frame.trace_ms = times.total_ms - times.marks_ms[2];
   }
   frame.state = *mapped(left.state);
   frame.counts = counts_of(*mapped(left.counters));
   frame.image = {mapped(left.image), left.image.count};
+  if (options_.tree_cost) frame.sah = sah_cost(*mapped(left.refit), frame.state.active_count);
+  return frame;
+}
+
+MovingFrame MovingFrames::take() {
+  if (waiting_.empty()) throw std::logic_error("no frame is under way");
+  Waiting waiting = waiting_.front();
+  waiting_.pop_front();
+  const Left& left = slots_[waiting.slot].left;
+  const auto wait = [&] {
+    const Recorder::Times times =
+        (waiting.rebuilds ? builds_ : refits_)[waiting.slot].wait(piece_limit_seconds);
+    return outcome(times, left);
+  };
+  MovingFrame frame = wait();
+  if (!waiting.rebuilds && mapped(left.refit)->appeared_count > 0) {
+    waiting.rebuilds = true;
+    builds_[waiting.slot].submit();
+    const double first_wall_ms = frame.wall_ms;
+    frame = wait();
+    frame.wall_ms += first_wall_ms;
+    frame.submits = 2;
+  }
+  frame.rebuilt = waiting.rebuilds;
+  frame.seconds = waiting.seconds;
   const std::string errors = describe_error_word(frame.state.error_word);
   if (!errors.empty())
     throw DeviceError("the frame at second " + std::to_string(frame.seconds) + ": " + errors);
+  chooser_.note({frame.rebuilt, frame.submits > 1, frame.update_ms + frame.wide_ms, frame.trace_ms,
+                 frame.counts.steps});
   return frame;
 }
 

@@ -6,8 +6,10 @@
 #include <span>
 #include <vector>
 
+#include "pipeline/refit.h"
 #include "render/frame.h"
 #include "render/moving_vertices.h"
+#include "render/update_chooser.h"
 #include "stages/gpu_executor.h"
 
 namespace coppice {
@@ -16,25 +18,32 @@ struct MovingOptions {
   BuildOptions build{};
   TraceOptions trace{};
   std::uint32_t under_way = 2;  // frames that may be on the device or waiting for it; at least 1
+  Update update = Update::rebuild;
+  bool tree_cost = false;  // the SAH cost of every frame's tree, which takes time
 };
 
 // What came of a frame, in milliseconds of the device's clock. Parts are 0 where it has none.
 struct MovingFrame {
-  double seconds = 0;      // of the scene
-  double vertices_ms = 0;  // to where they are
-  double build_ms = 0;     // triangles, bounds, and the tree
-  double wide_ms = 0;
-  double trace_ms = 0;  // camera rays to picture
-  double total_ms = 0;  // of the submit; of the host's clock where the device has none
-  double wall_ms = 0;   // from the submit until the host knew
+  double seconds = 0;         // of the scene
+  double vertices_ms = 0;     // to where they are
+  double update_ms = 0;       // triangles, and the tree built or refitted
+  double wide_ms = 0;         // and of the tree's cost
+  double trace_ms = 0;        // camera rays to picture
+  double total_ms = 0;        // of the submit; of the host's clock where the device has none
+  double wall_ms = 0;         // from the submit until the host knew
+  bool rebuilt = true;        // else refitted
+  std::uint32_t submits = 1;  // 2: triangles appeared that the tree of a refit has no leaves for
   TraceCounts counts;
   BuildState state;
+  double sah = 0;               // of the tree; 0 unless asked for
   std::span<const uint> image;  // RGBA8; until so many more frames as may be under way have been submitted
 };
 
-// A scene's frames, each in one submit: vertices to where they are, triangles, tree, picture. Submits are
-// recorded once; what a frame is told goes through as many slots as frames may be under way, and nothing is
-// allocated for one. A scene without motion stands still.
+// A scene's frames, each in one submit: vertices to where they are, triangles, tree, picture. The tree is
+// that of the frame, built, or that of the last build, refitted; the picture is the same (with the watertight
+// and the robust test, as it does not depend on the tree). Submits are recorded once; what a frame is told
+// goes through as many slots as frames may be under way, and nothing is allocated for one. A scene without
+// motion stands still.
 class MovingFrames {
  public:
   // Throws DeviceError if the device's memory does not hold it, LayoutError if a slot is too large, and what
@@ -57,7 +66,7 @@ class MovingFrames {
   const FramePlan& plan() const { return plan_; }
   const Layout& layout() const { return layout_; }
   GpuExecutor& executor() { return executor_; }
-  std::vector<Step> steps() const;
+  std::vector<Step> steps(bool rebuilds = true) const;
 
  private:
   // Of a frame under way.
@@ -69,6 +78,7 @@ class MovingFrames {
     Slot<uint> image;
     Slot<BuildState> state;
     Slot<TraceCounters> counters;
+    Slot<RefitState> refit;
   };
   struct FrameSlots {
     Told told;
@@ -77,10 +87,15 @@ class MovingFrames {
   struct Waiting {
     std::size_t slot;
     double seconds;
+    bool rebuilds;
   };
 
   static FramePlan plan_all(MovingFrames& frames, const SceneArrays& arrays);
-  void append(Chain& chain, const FrameSlots& slots) const;
+  void append(Chain& chain, const FrameSlots& slots, bool rebuilds) const;
+  void append_update(Chain& chain, bool rebuilds) const;
+  bool may_refit() const { return options_.update != Update::rebuild; }
+  bool has_state() const { return may_refit() || options_.tree_cost; }
+  MovingFrame outcome(const Recorder::Times& times, const Left& left);
   template <class T>
   const T* mapped(const Slot<T>& slot);
 
@@ -89,10 +104,12 @@ class MovingFrames {
   Layout layout_;
   MovingVertices vertices_;
   std::vector<FrameSlots> slots_;
+  RefitPlan refit_;  // empty where no frame is refitted; as what stands above, planned with plan_
   FramePlan plan_;
   GpuExecutor executor_;
-  std::vector<Recorder> recorders_;  // one a slot
-  std::deque<Waiting> waiting_;      // the oldest first
+  std::vector<Recorder> builds_, refits_;  // one of each a slot; no refits where none may be
+  UpdateChooser chooser_;
+  std::deque<Waiting> waiting_;  // the oldest first
   std::size_t next_slot_ = 0;
 };
 

@@ -56,7 +56,6 @@ struct RefitState {
 
 INTERFACE_BUFFER(RefitLevelBuffer, RefitLevel, 16)
 INTERFACE_BUFFER(RefitStateBuffer, RefitState, 16)
-INTERFACE_BUFFER(FloatBuffer, float, 4)
 
 // By the pair of its children: the first pair, k = 0, stands at nodes 1 and 2.
 struct RefitKeysArgs {

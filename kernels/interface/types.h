@@ -98,6 +98,7 @@ const uint DEVICE_SUBGROUP_SIZE_ID = 30;
 const uint DEVICE_LANES_IN_STEP_ID = 31;
 
 INTERFACE_BUFFER(UintBuffer, uint, 4)
+INTERFACE_BUFFER(FloatBuffer, float, 4)
 INTERFACE_COHERENT_BUFFER(CoherentUintBuffer, uint, 4)
 INTERFACE_BUFFER(TriangleBuffer, Triangle, 4)
 INTERFACE_BUFFER(AabbBuffer, Aabb, 8)

@@ -52,7 +52,6 @@ struct DeformStep {
   uint padding;
 };
 
-INTERFACE_BUFFER(FloatBuffer, float, 4)
 INTERFACE_BUFFER(SequenceStepBuffer, SequenceStep, 4)
 INTERFACE_BUFFER(DeformStepBuffer, DeformStep, 4)
 INTERFACE_BUFFER(JointBuffer, Joint, 16)
