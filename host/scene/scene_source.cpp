@@ -10,6 +10,7 @@
 #include "scene/generators.h"
 #include "scene/hard_cases.h"
 #include "scene/input_error.h"
+#include "scene/load_gltf.h"
 #include "scene/load_obj.h"
 #include "scene/printable.h"
 
@@ -112,6 +113,7 @@ Scene open_file(const std::string& spec) {
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   if (extension == ".obj") return load_obj(path);
+  if (extension == ".gltf" || extension == ".glb") return load_gltf(path);
 
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) {
@@ -121,7 +123,7 @@ Scene open_file(const std::string& spec) {
     throw InputError(
         printable(path) + ": " +
         (extension.empty() ? "no extension" : "unknown extension '" + printable(path.extension()) + "'") +
-        ", scene files end in .obj");
+        ", scene files end in .obj, .gltf or .glb");
   }
   if (!extension.empty() || path.has_parent_path()) throw InputError(printable(path) + ": no such file");
   throw InputError("unknown scene '" + printable(std::string_view(spec)) +
