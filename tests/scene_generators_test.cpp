@@ -185,9 +185,11 @@ TEST(OpenScene, AFileThatIsNoSceneIsAnError) {
   EXPECT_EQ(error_of("none/none"), "none/none: no such file");
   const std::filesystem::path folder = testing::TempDir();
   EXPECT_EQ(error_of(folder.string()), folder.string() + ": is a directory, not a scene file");
-  const auto path = folder / "coppice_open_scene.ply";
-  std::ofstream(path) << "ply\n";
-  EXPECT_EQ(error_of(path.string()), path.string() + ": unknown extension '.ply', scene files end in .obj");
+  const auto path = folder / "coppice_open_scene.stl";
+  std::ofstream(path) << "solid\n";
+  EXPECT_EQ(error_of(path.string()),
+            path.string() +
+                ": unknown extension '.stl', scene files end in .obj, .gltf, .glb, .ply, .json or .anim");
   std::filesystem::remove(path);
 }
 

@@ -3,17 +3,15 @@
 #include <tiny_gltf.h>
 
 #include <cstddef>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
-namespace coppice {
+#include "scene/load_gltf.h"
 
-// Gives the bytes of an external buffer by its URI, percent signs decoded. Throws InputError.
-using FindBytes = std::function<std::string(const std::string& uri)>;
+namespace coppice {
 
 // A glTF 2.0 file that has passed its schema, with the contents of its buffers. What indices refer to is not
 // yet checked. Images, textures and samplers are left out of the model.

@@ -34,6 +34,7 @@ void GltfRig::apply_tracks(double seconds, std::vector<NodeTransform>& at) const
     NodeTransform& node = at[track.node];
     if (track.path == NodePath::translation) node.translation = {value[0], value[1], value[2]};
     if (track.path == NodePath::scale) node.scale = {value[0], value[1], value[2]};
+    if (track.path == NodePath::turn) node.rotation = glm::angleAxis(glm::radians(value[0]), track.axis);
     if (track.path == NodePath::rotation) node.rotation = {value[3], value[0], value[1], value[2]};
   }
 }

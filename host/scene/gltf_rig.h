@@ -21,12 +21,13 @@ struct NodeTransform {
   glm::dmat4 matrix() const;
 };
 
-enum class NodePath { translation, rotation, scale, weights };
+enum class NodePath { translation, rotation, scale, weights, turn };  // turn: degrees around an axis
 
 struct NodeTrack {
   std::uint32_t node = 0;
   NodePath path = NodePath::translation;
   Keyframes keyframes;
+  glm::dvec3 axis{0.0, 1.0, 0.0};  // of a turn; unit length
 };
 
 // The nodes of a glTF file in motion. A time before 0 or after the end of the animation is one of the cycle

@@ -1,5 +1,6 @@
 #include "scene/load_gltf.h"
 
+#include "scene/gltf_document.h"
 #include "scene/gltf_flatten.h"
 #include "scene/input_error.h"
 #include "scene/obj_file.h"

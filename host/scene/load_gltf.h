@@ -1,14 +1,17 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
 
-#include "scene/gltf_document.h"
 #include "scene/scene.h"
 
 namespace coppice {
+
+// Gives the bytes of an external buffer by its URI, percent signs decoded. Throws InputError.
+using FindBytes = std::function<std::string(const std::string& uri)>;
 
 struct GltfReading {
   std::optional<std::string> animation;  // only the one of this name or index; else those that go together

@@ -12,7 +12,11 @@
 #include "scene/input_error.h"
 #include "scene/load_gltf.h"
 #include "scene/load_obj.h"
+#include "scene/load_ply.h"
+#include "scene/obj_file.h"
 #include "scene/printable.h"
+#include "scene/scene_file.h"
+#include "scene/scene_file_meshes.h"
 
 namespace coppice {
 namespace {
@@ -107,13 +111,33 @@ std::optional<BuiltIn> find_built_in(const std::string& spec) {
   return std::nullopt;
 }
 
-Scene open_file(const std::string& spec) {
-  const std::filesystem::path path = spec;
+std::string extension_of(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  if (extension == ".obj") return load_obj(path);
-  if (extension == ".gltf" || extension == ".glb") return load_gltf(path);
+  return extension;
+}
+
+// The faces of x.anim are those of x_f00.obj beside it.
+Scene open_anim(const std::filesystem::path& path) {
+  const ObjFile file = read_obj_file(path);
+  const std::filesystem::path faces = path.parent_path() / (path.stem().string() + "_f00.obj");
+  std::error_code error;
+  if (!std::filesystem::exists(faces, error)) {
+    throw InputError(printable(path) + ": holds no faces, expected them in " + printable(faces.filename()) +
+                     " beside it; a scene file can name another OBJ");
+  }
+  Scene scene = make_anim_scene(std::string(file.text()), printable(path), load_obj(faces));
+  scene.name = printable(path.stem());
+  return scene;
+}
+
+Scene open_file(const std::string& spec) {
+  const std::filesystem::path path = spec;
+  const std::string extension = extension_of(path);
+  if (is_mesh_file(path)) return load_mesh_file(path);
+  if (extension == ".json") return load_scene_file(path);
+  if (extension == ".anim") return open_anim(path);
 
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) {
@@ -123,21 +147,19 @@ Scene open_file(const std::string& spec) {
     throw InputError(
         printable(path) + ": " +
         (extension.empty() ? "no extension" : "unknown extension '" + printable(path.extension()) + "'") +
-        ", scene files end in .obj, .gltf or .glb");
+        ", scene files end in .obj, .gltf, .glb, .ply, .json or .anim");
   }
   if (!extension.empty() || path.has_parent_path()) throw InputError(printable(path) + ": no such file");
   throw InputError("unknown scene '" + printable(std::string_view(spec)) +
                    "': neither a file nor a built-in scene (see 'coppice scenes')");
 }
 
-Scene open_unscaled(const std::string& spec) {
+std::optional<Scene> find_generated(const std::string& spec) {
   if (const auto built_in = find_built_in(spec)) return built_in->make();
   const auto [name, count] = split(spec);
-  if (name == "grove") {
-    if (count) throw InputError("scene 'grove' has one size, it takes no number of triangles");
-    return make_grove();
-  }
-  return open_file(spec);
+  if (name != "grove") return std::nullopt;
+  if (count) throw InputError("scene 'grove' has one size, it takes no number of triangles");
+  return make_grove();
 }
 
 }  // namespace
@@ -165,8 +187,27 @@ std::optional<SceneSize> built_in_size(const std::string& spec) {
   return built_in ? std::optional(built_in->size) : std::nullopt;
 }
 
+bool is_mesh_file(const std::filesystem::path& path) {
+  const std::string extension = extension_of(path);
+  return extension == ".obj" || extension == ".gltf" || extension == ".glb" || extension == ".ply";
+}
+
+Scene load_mesh_file(const std::filesystem::path& path, const GltfReading& reading) {
+  const std::string extension = extension_of(path);
+  if (extension == ".ply") return load_ply(path);
+  if (extension == ".obj") return load_obj(path);
+  return load_gltf(path, reading);
+}
+
+Scene make_built_in(const std::string& spec) {
+  if (auto scene = find_generated(spec)) return std::move(*scene);
+  throw InputError("unknown scene '" + printable(std::string_view(spec)) +
+                   "', expected a built-in one (see 'coppice scenes')");
+}
+
 Scene open_scene(const std::string& spec, std::string_view up) {
-  Scene scene = open_unscaled(spec);
+  std::optional<Scene> generated = find_generated(spec);
+  Scene scene = generated ? std::move(*generated) : open_file(spec);
   stand_up(scene, up);
   bring_into_range(scene);
   return scene;

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "interface/ploc.h"
+#include "scene/load_gltf.h"
 #include "scene/scene.h"
 
 namespace coppice {
@@ -39,12 +41,20 @@ struct SceneSize {
 // InputError where open_scene would, but for what is only found in files.
 std::optional<SceneSize> built_in_size(const std::string& spec);
 
-// Opens what the user named: the path of an .obj file, "grove", "scatter[:N]", "terrain[:N]", "moving[:N]" or
-// "hard:CASE[:N[:SEED]]", with SEED a decimal number below 2^64, 1 if not given. A built-in name wins over a
-// file of the same name ("./grove" names the file). The scene is stood up (stand_up) and brought into range
-// (bring_into_range).
-// Throws InputError where nothing answers to the name, N or SEED is out of range, or the file cannot be
-// loaded.
+// Whether the name ends in .obj, .gltf, .glb or .ply, in any letter case; and the load_* of what it is.
+bool is_mesh_file(const std::filesystem::path& path);
+Scene load_mesh_file(const std::filesystem::path& path, const GltfReading& reading = {});
+
+// A built-in scene by its name, neither stood up nor brought into range. Throws InputError as open_scene
+// does.
+Scene make_built_in(const std::string& spec);
+
+// Opens what the user named: the path of a mesh (is_mesh_file), of a scene file (.json) or of an .anim file
+// with the OBJ of its first frame beside it (x_f00.obj beside x.anim), "grove", "scatter[:N]", "terrain[:N]",
+// "moving[:N]" or "hard:CASE[:N[:SEED]]", with SEED a decimal number below 2^64, 1 if not given. A built-in
+// name wins over a file of the same name ("./grove" names the file). The scene is stood up (stand_up) and
+// brought into range (bring_into_range). Throws InputError where nothing answers to the name, N or SEED is
+// out of range, or the file cannot be loaded.
 Scene open_scene(const std::string& spec, std::string_view up = "y");
 
 // What names a scene.

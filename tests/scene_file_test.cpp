@@ -1,0 +1,472 @@
+// Scene files: objects, what moves them, cameras, light, and every error.
+#include "scene/scene_file.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "scene/input_error.h"
+#include "scene/motion.h"
+#include "scene/scene_source.h"
+#include "support/gltf_text.h"
+#include "support/obj_folder.h"
+
+namespace coppice {
+namespace {
+
+using nlohmann::json;
+using SceneFile = ObjFolder;
+
+// Meshes that are not read from files: "t.obj" is the triangle, "q.obj" a square of two triangles that share
+// an edge, "walk.glb" moves by (1, 0, 0) a second for two seconds.
+class LineRig : public Rig {
+ public:
+  Pose pose(double seconds) const override {
+    Pose pose;
+    pose.joints.emplace_back(1.0f);
+    pose.joints[0][3][0] = static_cast<float>(seconds);
+    return pose;
+  }
+};
+
+Scene mesh_named(const std::string& path, const GltfReading& reading) {
+  Scene scene;
+  if (path == "q.obj") {
+    scene.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+    scene.indices = {{0, 1, 2}, {0, 2, 3}};
+  } else if (path == "t.obj" || path == "walk.glb") {
+    scene.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    scene.indices = {{0, 1, 2}};
+  } else {
+    throw InputError(path + ": no such file");
+  }
+  if (path == "walk.glb") {
+    Motion motion;
+    motion.rest = scene.positions;
+    motion.rig = std::make_shared<LineRig>();
+    motion.duration_seconds = reading.animation ? 5 : 2;
+    scene.motion = std::make_shared<Motion>(motion);
+    scene.camera = Camera{.position = {0, 0, 9}};
+  }
+  scene.material_index.assign(scene.indices.size(), 0);
+  return scene;
+}
+
+Scene parse(const json& file) {
+  SceneFileSources sources;
+  sources.mesh = mesh_named;
+  sources.built_in = [](const std::string& name) { return make_built_in(name); };
+  sources.bytes = [](const std::string& path) -> std::string { throw InputError(path + ": no such file"); };
+  return parse_scene_file(file.dump(), "s.json", sources);
+}
+
+std::string error_of(const json& file) {
+  try {
+    parse(file);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+json one_object(const json& more = json::object()) {
+  json file = {
+      {"meshes", {{"t", {{"file", "t.obj"}}}, {"q", {{"file", "q.obj"}}}, {"walk", {{"file", "walk.glb"}}}}},
+      {"objects", {{{"mesh", "t"}}}}};
+  file["objects"][0].update(more);
+  return file;
+}
+
+void expect_corner(const Scene& scene, std::size_t corner, glm::vec3 expected) {
+  ASSERT_LT(corner, scene.positions.size());
+  EXPECT_LT(glm::distance(scene.positions[corner], expected), 1e-5f)
+      << scene.positions[corner].x << ' ' << scene.positions[corner].y << ' ' << scene.positions[corner].z;
+}
+
+void expect_corner_at(const Scene& scene, double seconds, std::size_t corner, glm::vec3 expected) {
+  ASSERT_TRUE(scene.motion);
+  Scene moved = scene;
+  moved.positions = positions_at(*scene.motion, seconds);
+  expect_corner(moved, corner, expected);
+}
+
+TEST(SceneFiles, ObjectsPlaceMeshes) {
+  const Scene plain = parse(one_object());
+  EXPECT_EQ(plain.motion, nullptr);
+  EXPECT_EQ(plain.positions, (std::vector<glm::vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+  expect_corner(parse(one_object({{"translation", {1, 2, 3}}, {"scale", 2}})), 1, {3, 2, 3});
+  expect_corner(
+      parse(one_object({{"scale", {1, 2, 3}}, {"rotation", {{"axis", {0, 0, 5}}, {"degrees", 90}}}})), 2,
+      {-2, 0, 0});
+  expect_corner(parse(one_object({{"rotation", {0, 0, 1, 1}}})), 1, {0, 1, 0});
+  const Scene mirrored =
+      parse(one_object({{"matrix", {{-1, 0, 0, 4}, {0, 1, 0, 5}, {0, 0, 1, 6}, {0, 0, 0, 1}}}}));
+  expect_corner(mirrored, 1, {3, 5, 6});
+  EXPECT_EQ(mirrored.indices, (std::vector<glm::uvec3>{{0, 2, 1}}));
+}
+
+TEST(SceneFiles, ParentsMaterialsAndTwoObjects) {
+  json file =
+      one_object({{"name", "wheel"}, {"parent", "car"}, {"translation", {1, 0, 0}}, {"material", "red"}});
+  file["objects"].push_back({{"name", "car"}, {"rotation", {{"axis", {0, 1, 0}}, {"degrees", 180}}}});
+  file["objects"].push_back({{"mesh", "q"}});
+  file["materials"] = {{"red", {{"diffuse", {1, 0, 0}}, {"opacity", 0.5}}}};
+  const Scene scene = parse(file);
+  expect_corner(scene, 0, {-1, 0, 0});
+  EXPECT_EQ(scene.indices, (std::vector<glm::uvec3>{{0, 1, 2}, {3, 4, 5}, {3, 5, 6}}));
+  EXPECT_EQ(scene.materials[scene.material_index[0]].name, "red");
+  EXPECT_EQ(scene.materials[scene.material_index[0]].diffuse, glm::vec3(1, 0, 0));
+  EXPECT_EQ(scene.materials[scene.material_index[0]].opacity, 0.5f);
+  EXPECT_EQ(scene.materials[scene.material_index[2]].name, "default");
+}
+
+TEST(SceneFiles, KeyframesMoveObjectsAndWhatIsBelowThem) {
+  json file = one_object(
+      {{"name", "a"},
+       {"keyframes",
+        {{"translation", {{"times", {1, 3}}, {"values", {{0, 0, 0}, {4, 0, 0}}}}},
+         {"rotation", {{"times", {0, 4}}, {"axis", {0, 1, 0}}, {"degrees", {0, 720}}}},
+         {"scale", {{"times", {0, 2}}, {"values", {{1, 1, 1}, {2, 2, 2}}}, {"interpolation", "step"}}}}}});
+  file["objects"].push_back({{"mesh", "q"}, {"parent", "a"}, {"translation", {0, 0, 1}}});
+  file["objects"].push_back({{"mesh", "q"}, {"translation", {7, 0, 0}}});
+  const Scene scene = parse(file);
+  EXPECT_EQ(scene.motion->duration_seconds, 4);
+  expect_corner(scene, 1, {1, 0, 0});
+  expect_corner_at(scene, 1, 1, {-1, 0, 0});  // half a turn
+  expect_corner_at(scene, 2, 1, {4, 0, 0});   // 2 along x, a whole turn, twice as large
+  expect_corner_at(scene, 9, 0, {4, 0, 0});   // holds
+  expect_corner_at(scene, 1, 3, {0, 0, -1});  // below it
+  expect_corner_at(scene, 1, 7, {7, 0, 0});   // still
+  file["objects"][0]["keyframes"] = {
+      {"rotation", {{"times", {0, 1}}, {"values", {{0, 0, 0, 1}, {0, 0, -1, 0}}}}}};
+  file["duration"] = 12.5;
+  file["frames_per_second"] = 24;
+  const Scene turned = parse(file);
+  expect_corner_at(turned, 0.5, 1, {0, -1, 0});
+  EXPECT_EQ(turned.motion->duration_seconds, 12.5);
+  EXPECT_EQ(turned.motion->frames_per_second, 24);
+}
+
+// A cubic curve goes through its values, without a jump in speed.
+TEST(SceneFiles, CubicKeyframesAreSmooth) {
+  const Scene scene = parse(one_object({{"keyframes",
+                                         {{"translation",
+                                           {{"times", {0, 1, 3, 4}},
+                                            {"values", {{0, 0, 0}, {1, 0, 0}, {1, 2, 0}, {0, 0, 0}}},
+                                            {"interpolation", "cubic"}}}}}}));
+  const auto at = [&](double seconds) { return glm::dvec3(positions_at(*scene.motion, seconds)[0]); };
+  expect_corner_at(scene, 1, 0, {1, 0, 0});
+  expect_corner_at(scene, 3, 0, {1, 2, 0});
+  for (const double key : {1.0, 3.0}) {
+    const glm::dvec3 before = (at(key) - at(key - 1e-2)) / 1e-2, after = (at(key + 1e-2) - at(key)) / 1e-2;
+    EXPECT_LT(glm::distance(before, after), 0.1) << key;
+  }
+  const glm::dvec3 middle = at(2);
+  EXPECT_NEAR(middle.y, 1.0 + 2.0 / 8 * (2.0 / 3 - 0),
+              1e-5);  // Hermite: (p0 + p1) / 2 + length / 8 (m0 - m1)
+}
+
+TEST(SceneFiles, PartsThatMoveByThemselvesGoWithTheirObject) {
+  json file = one_object();
+  file["objects"][0] = {{"mesh", "walk"}, {"translation", {0, 5, 0}}};
+  file["objects"].push_back(
+      {{"mesh", "walk"},
+       {"keyframes", {{"translation", {{"times", {0, 1}}, {"values", {{0, 0, 0}, {0, 0, 8}}}}}}}});
+  const Scene scene = parse(file);
+  expect_corner_at(scene, 2, 0, {2, 5, 0});
+  expect_corner_at(scene, 0.5, 3, {0.5f, 0, 4});
+  EXPECT_EQ(scene.motion->duration_seconds, 2);
+  ASSERT_TRUE(scene.camera.has_value());
+  EXPECT_EQ(scene.camera->position, glm::vec3(0, 5, 9));
+  file["meshes"]["walk"]["animation"] = "run";
+  EXPECT_EQ(parse(file).motion->duration_seconds, 5);
+}
+
+TEST(SceneFiles, DeformationsTakeTheirNumbersFromTheMesh) {
+  json file = one_object({{"mesh", "q"}, {"deform", {{"kind", "wave"}, {"amount", 0.5}, {"seconds", 3}}}});
+  const Scene wave = parse(file);
+  ASSERT_TRUE(wave.motion);
+  ASSERT_EQ(wave.motion->deformations.size(), 1u);
+  EXPECT_EQ(wave.motion->deformations[0].centre, glm::vec3(0.5f, 0.5f, 0));
+  EXPECT_EQ(wave.motion->deformations[0].size, 1.0f);
+  EXPECT_EQ(wave.motion->deformations[0].amount, 0.5f);
+  EXPECT_EQ(wave.motion->duration_seconds, 3);
+  EXPECT_EQ(wave.positions, positions_at(*wave.motion, 0));
+  EXPECT_NE(wave.positions, positions_at(*wave.motion, 1));
+  file["objects"][0]["deform"] = {{"kind", "sway"}, {"size", 4}, {"centre", {1, 2, 3}}};
+  EXPECT_EQ(parse(file).motion->deformations[0].centre, glm::vec3(1, 2, 3));
+  EXPECT_EQ(parse(file).motion->deformations[0].kind, DeformKind::sway);
+  for (const auto& [name, kind] :
+       {std::pair{"explode", DeformKind::explode}, std::pair{"swarm", DeformKind::swarm}}) {
+    file["objects"][0]["deform"] = {{"kind", name}, {"piece_triangles", 2}};
+    const Scene pieces = parse(file);
+    EXPECT_EQ(pieces.motion->deformations[0].kind, kind);
+    EXPECT_EQ(pieces.motion->deformations[0].piece_vertices, 6u);
+    EXPECT_EQ(pieces.positions.size(), 6u);  // no vertex is shared
+    EXPECT_EQ(pieces.indices, (std::vector<glm::uvec3>{{0, 1, 2}, {3, 4, 5}}));
+  }
+}
+
+TEST(SceneFiles, CamerasAndLight) {
+  json file = one_object();
+  file["camera"] = {{"position", {0, 1, 5}}, {"target", {0, 0, 0}}, {"fov", 55}};
+  file["light"] = {{"direction", {0, 0, 2}}, {"radiance", {3, 2, 1}}, {"ambient", {0.1, 0.2, 0.3}}};
+  const Scene still = parse(file);
+  EXPECT_EQ(still.camera->position, glm::vec3(0, 1, 5));
+  EXPECT_EQ(still.camera->vertical_fov_degrees, 55.0f);
+  EXPECT_EQ(still.light.direction, glm::vec3(0, 0, 1));
+  EXPECT_EQ(still.light.radiance, glm::vec3(3, 2, 1));
+  EXPECT_EQ(still.ambient_light, glm::vec3(0.1f, 0.2f, 0.3f));
+  EXPECT_EQ(still.motion, nullptr);
+  file["camera"]["keyframes"] = {{"position", {{"times", {0, 2}}, {"values", {{0, 1, 5}, {4, 1, 5}}}}},
+                                 {"fov", {{"times", {0, 4}}, {"values", {40, 60}}}}};
+  const Scene moves = parse(file);
+  ASSERT_TRUE(moves.motion);
+  EXPECT_EQ(moves.motion->duration_seconds, 4);
+  const Camera camera = *pose_at(*moves.motion, 1).camera;
+  EXPECT_EQ(camera.position, glm::vec3(2, 1, 5));
+  EXPECT_EQ(camera.vertical_fov_degrees, 45.0f);
+  EXPECT_EQ(moves.camera->vertical_fov_degrees, 40.0f);
+  file["up"] = "z";
+  const Scene up = parse(file);
+  EXPECT_EQ(up.camera->position, glm::vec3(0, 5, -1));  // z is up
+  EXPECT_EQ(up.light.direction, glm::vec3(0, 1, 0));
+  EXPECT_LT(glm::distance(pose_at(*up.motion, 1).camera->position, glm::vec3(2, 5, -1)), 1e-6f);
+  EXPECT_EQ(up.positions[2], glm::vec3(0, 0, -1));
+}
+
+TEST_F(SceneFile, FilesBesideItAndSequences) {
+  std::filesystem::create_directories(folder_ / "m");
+  for (int i = 0; i < 3; ++i) {
+    write("m/f_0" + std::to_string(i + 7) + ".obj",
+          "v " + std::to_string(i) + " 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  }
+  json file = {{"meshes",
+                {{"s",
+                  {{"sequence", {{"pattern", "m/f_##.obj"}, {"first", 7}, {"last", 9}}},
+                   {"frames_per_second", 2},
+                   {"interpolate", true},
+                   {"start", 1}}}}},
+               {"objects", {{{"mesh", "s"}}}}};
+  const Scene scene = load_scene_file(write("s.json", file.dump()));
+  EXPECT_EQ(scene.name, "s");
+  expect_corner_at(scene, 0, 0, {0, 0, 0});
+  expect_corner_at(scene, 1.75, 0, {1.5f, 0, 0});
+  expect_corner_at(scene, 9, 0, {2, 0, 0});
+  EXPECT_EQ(scene.motion->duration_seconds, 2.5);
+  file["meshes"]["s"]["sequence"] = {{"files", {"m/f_09.obj", "m/f_07.obj"}}};
+  file["meshes"]["s"]["interpolate"] = false;
+  expect_corner_at(open_scene(write("s.json", file.dump()).string()), 1.4, 0, {2, 0, 0});
+  write("m/f_07.obj", TRIANGLE + "f 1 3 2\n");
+  try {
+    load_scene_file(folder_ / "s.json");
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what())
+                  .find("s.json: /meshes/s/sequence/files/1: 'm/f_07.obj' has other faces than"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+std::string anim_bytes(std::uint32_t magic, std::uint32_t frames) {
+  std::string bytes = little_endian(magic) + little_endian(3) + little_endian(frames) + little_endian(1);
+  for (std::uint32_t frame = 0; frame < frames; ++frame) {
+    for (int i = 0; i < 9; ++i) {
+      const auto value = static_cast<float>(frame);
+      bytes.append(reinterpret_cast<const char*>(&value), 4);
+    }
+  }
+  return bytes;
+}
+
+TEST_F(SceneFile, AnimFilesWithTheirFacesBesideThem) {
+  write("c_f00.obj", TRIANGLE + "f 1 2 3\n");
+  const std::string path = write("c.anim", anim_bytes(0x4d494e41, 4)).string();
+  const Scene scene = open_scene(path);
+  EXPECT_EQ(scene.name, "c");
+  EXPECT_NEAR(scene.motion->duration_seconds, 4 / 30.0, 1e-12);
+  expect_corner_at(scene, 2 / 30.0, 1, {2, 2, 2});
+  const json file = {
+      {"meshes",
+       {{"c", {{"anim", "c.anim"}, {"faces", "c_f00.obj"}, {"frames_per_second", 1}, {"repeat", true}}}}},
+      {"objects", {{{"mesh", "c"}, {"scale", 2}}}}};
+  expect_corner_at(load_scene_file(write("s.json", file.dump())), 5, 0, {2, 2, 2});
+
+  const auto fails = [&](const std::string& bytes, const std::string& says) {
+    write("c.anim", bytes);
+    try {
+      open_scene(path);
+      FAIL() << says;
+    } catch (const InputError& error) {
+      EXPECT_EQ(std::string(error.what()), path + ": " + says);
+    }
+  };
+  fails(anim_bytes(1, 1), "no .anim file, expected the magic 0x4d494e41");
+  fails(anim_bytes(0x4d494e41, 0), "no vertices or no frames, expected some");
+  fails(anim_bytes(0x4d494e41, 2).substr(0, 87),
+        "87 bytes, expected 16 and 12 for each of 3 vertices in each of 2 frames");
+  write("c_f00.obj", TRIANGLE + "f 1 2 3\nf 1 3 2\n");
+  fails(anim_bytes(0x4d494e41, 1), "3 vertices and 1 triangles, expected the 3 and 2 of its faces");
+  std::filesystem::remove(folder_ / "c_f00.obj");
+  fails(anim_bytes(0x4d494e41, 1),
+        "holds no faces, expected them in c_f00.obj beside it; a scene file can name another OBJ");
+}
+
+TEST(SceneFiles, FarFromTheOriginAnOffsetIsSubtracted) {
+  const Scene scene = parse(one_object({{"translation", {1e7, 0, 0}}, {"scale", 0.01}}));
+  EXPECT_NE(scene.offset.x, 0);
+  EXPECT_NEAR(scene.positions[1].x - scene.positions[0].x, 0.01, 1e-6);
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_TRUE(scene.warnings[0].starts_with("s.json: too far")) << scene.warnings[0];
+}
+
+TEST(SceneFiles, EveryErrorNamesItsPlaceAndWhatWasExpected) {
+  struct Fault {
+    const char* pointer;
+    json value;  // null: taken out
+    const char* says;
+  };
+  const std::vector<Fault> faults = {
+      {"/objects", nullptr, "s.json: key \"objects\" is missing"},
+      {"/objekts", 1, "s.json: /objekts: unknown key, expected $schema, camera"},
+      {"/objects/0/positon", 1,
+       "s.json: /objects/0/positon: unknown key, expected deform, keyframes, material"},
+      {"/objects/0", 5, "s.json: /objects/0: 5, expected an object"},
+      {"/objects/0/mesh", "x", "s.json: /objects/0/mesh: no mesh 'x', there are: q, t, walk"},
+      {"/objects/0/mesh", 3, "s.json: /objects/0/mesh: 3, expected a string"},
+      {"/objects/0/mesh", nullptr, ""},
+      {"/objects/0/material", "x", "s.json: /objects/0/material: no material 'x', there are: none"},
+      {"/objects/0/parent", "x", "s.json: /objects/0/parent: 'x', expected the name of an object"},
+      {"/objects/0/translation", {1, 2}, "s.json: /objects/0/translation: [1,2], expected an array of 3"},
+      {"/objects/0/translation/1", "a", "s.json: /objects/0/translation/1: \"a\", expected a number from"},
+      {"/objects/0/rotation",
+       {0, 0, 0, 0},
+       "s.json: /objects/0/rotation: [0,0,0,0], expected a quaternion that is"},
+      {"/objects/0/rotation",
+       {1, 0, 0},
+       "s.json: /objects/0/rotation: [1,0,0], expected a quaternion of 4 numbers"},
+      {"/objects/0/rotation",
+       {{"axis", {0, 1, 0}}},
+       "s.json: /objects/0/rotation: key \"degrees\" is missing"},
+      {"/objects/0/rotation",
+       {{"axis", {0, 0, 0}}, {"degrees", 1}},
+       "s.json: /objects/0/rotation/axis: [0,0,0], exp"},
+      {"/objects/0/scale", "big", "s.json: /objects/0/scale: \"big\", expected a number or an array of 3"},
+      {"/objects/0/matrix",
+       {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 1, 1}},
+       "s.json: /objects/0/matrix/3: [0,0,1,1], expected [0,0,0,1]"},
+      {"/objects/0/keyframes",
+       {{"turn", 1}},
+       "s.json: /objects/0/keyframes/turn: unknown key, expected rotation, sc"},
+      {"/objects/0/keyframes",
+       {{"translation", {{"times", {0, 0}}, {"values", {{1, 1, 1}, {1, 1, 1}}}}}},
+       "s.json: /objects/0/keyframes/translation/times/1: 0, expected more than the time before"},
+      {"/objects/0/keyframes",
+       {{"scale", {{"times", {0, 1}}, {"values", {{1, 1, 1}}}}}},
+       "s.json: /objects/0/keyframes/scale/values: 1 values, expected one for each of the 2 times"},
+      {"/objects/0/keyframes",
+       {{"rotation", {{"times", {0}}, {"axis", {0, 1, 0}}}}},
+       "s.json: /objects/0/keyframes/rotation: expected either \"values\" or both \"axis\" and \"degrees\""},
+      {"/objects/0/keyframes",
+       {{"scale", {{"times", {0}}, {"values", {{1, 1, 1}}}, {"interpolation", "bounce"}}}},
+       "/scale/interpolation: \"bounce\", expected \"step\", \"linear\" or \"cubic\""},
+      {"/objects/0/deform",
+       {{"kind", "melt"}},
+       "s.json: /objects/0/deform/kind: \"melt\", expected \"wave\""},
+      {"/objects/0/deform",
+       {{"kind", "wave"}, {"piece_triangles", 2}},
+       "/deform/piece_triangles: does not go with"},
+      {"/objects/0/deform",
+       {{"kind", "wave"}, {"seconds", 0}},
+       "/deform/seconds: 0, expected a number above 0"},
+      {"/meshes/t", json::object(), "s.json: /meshes/t: expected one of the keys \"file\", \"built_in\""},
+      {"/meshes/t/built_in", "grove", "s.json: /meshes/t/built_in: beside \"file\", expected one of them"},
+      {"/meshes/t/repeat", true, "s.json: /meshes/t/repeat: does not go with \"file\""},
+      {"/meshes/t/animation", "run", "s.json: /meshes/t/animation: does not go with a file that is not glTF"},
+      {"/meshes/t/file", "x.obj", "s.json: /meshes/t/file: x.obj: no such file"},
+      {"/meshes/t/file", "other.json",
+       "/meshes/t/file: 'other.json', a scene file in a scene file is not read, exp"},
+      {"/meshes/t/file", "x.stl", "s.json: /meshes/t/file: 'x.stl', expected an .obj, .gltf, .glb or .ply"},
+      {"/meshes/t",
+       {{"built_in", "bunny"}},
+       "s.json: /meshes/t/built_in: unknown scene 'bunny', expected a built-in"},
+      {"/meshes/t",
+       {{"built_in", "scatter:0"}},
+       "s.json: /meshes/t/built_in: scene 'scatter:0': '0' is no number"},
+      {"/meshes/t", {{"anim", "a.anim"}}, "s.json: /meshes/t: key \"faces\" is missing"},
+      {"/meshes/t", {{"anim", "a.anim"}, {"faces", "t.obj"}}, "s.json: /meshes/t/anim: a.anim: no such file"},
+      {"/meshes/t",
+       {{"sequence", {{"pattern", "a.obj"}, {"last", 1}}}},
+       "/sequence/pattern: \"a.obj\", expected #"},
+      {"/meshes/t",
+       {{"sequence", {{"pattern", "a#.obj"}}}},
+       "s.json: /meshes/t/sequence: key \"last\" is missing"},
+      {"/meshes/t",
+       {{"sequence", {{"pattern", "a#.obj"}, {"first", 3}, {"last", 1}}}},
+       "/sequence/last: 1, expected"},
+      {"/meshes/t",
+       {{"sequence", json::object()}},
+       "/meshes/t/sequence: expected one of the keys \"files\", \"pat"},
+      {"/camera", {{"position", {0, 0, 0}}}, "s.json: /camera: key \"target\" is missing"},
+      {"/camera",
+       {{"position", {0, 0, 0}}, {"target", {0, 0, 0}}},
+       "s.json: /camera: at 0.000000 seconds the position"},
+      {"/camera", {{"position", {0, 1, 0}}, {"target", {0, 0, 0}}}, "up points along the line of sight"},
+      {"/camera",
+       {{"position", {0, 0, 1}}, {"target", {0, 0, 0}}, {"fov", 180}},
+       "/camera/fov: 180, expected a number"},
+      {"/light",
+       {{"direction", {0, 0, 0}}},
+       "s.json: /light/direction: [0,0,0], expected a direction that is not 0"},
+      {"/light", {{"radiance", {-1, 0, 0}}}, "s.json: /light/radiance/0: -1, expected a number from 0"},
+      {"/up", "up", "s.json: /up: \"up\", expected \"x\", \"y\", \"z\""},
+      {"/duration", 0, "s.json: /duration: 0, expected a number above 0"},
+      {"/materials",
+       {{"a/b", {{"diffuse", 1}}}},
+       "s.json: /materials/a~1b/diffuse: 1, expected an array of 3"},
+  };
+  for (const auto& [pointer, value, says] : faults) {
+    json broken = one_object();
+    const json::json_pointer place(pointer);
+    if (value.is_null()) {
+      broken[place.parent_pointer()].erase(place.back());
+    } else {
+      if (place == json::json_pointer("/objects/0/translation/1"))
+        broken["objects"][0]["translation"] = {0, 0, 0};
+      broken[place] = value;
+    }
+    const std::string message = error_of(broken);
+    EXPECT_NE(message.find(says), message.npos) << pointer << ": " << message;
+    EXPECT_EQ(message.empty(), *says == 0) << pointer << ": " << message;
+  }
+  json cycle = one_object({{"name", "a"}, {"parent", "b"}});
+  cycle["objects"].push_back({{"name", "b"}, {"parent", "a"}});
+  EXPECT_EQ(error_of(cycle),
+            "s.json: /objects/0/parent: the object is below itself (a cycle), expected a tree");
+  cycle["objects"][1]["name"] = "a";
+  EXPECT_EQ(error_of(cycle), "s.json: /objects/1/name: 'a' again, expected another name");
+  json moving = one_object({{"mesh", "walk"}, {"deform", {{"kind", "explode"}}}});
+  EXPECT_EQ(error_of(moving),
+            "s.json: /objects/0/deform/kind: \"explode\" needs vertices that no animation moves");
+}
+
+// Those that ship.
+TEST(SceneFiles, ScenesThatShipAreRead) {
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(COPPICE_SCENES)) {
+    const std::string path = entry.path().string();
+    if (path.ends_with("schema.json") || (!path.ends_with(".json") && !path.ends_with(".gltf"))) continue;
+    const Scene scene = open_scene(path);
+    EXPECT_FALSE(scene.indices.empty()) << path;
+    EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
+    EXPECT_EQ(scene.positions, positions_at(*scene.motion, 0)) << path;
+    EXPECT_NE(scene.positions, positions_at(*scene.motion, 0.3 * scene.motion->duration_seconds)) << path;
+    ++count;
+  }
+  EXPECT_GE(count, 3u);
+}
+
+}  // namespace
+}  // namespace coppice
