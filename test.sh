@@ -5,7 +5,7 @@
 #   ./test.sh                    everything
 #   ./test.sh CTEST_ARGUMENT...  one ctest run on the reference driver, for example ./test.sh -R sort
 # COPPICE_DRIVER=auto|private|stock|system chooses the Vulkan driver, see host/setup.sh.
-# COPPICE_FUZZ_SECONDS is how long the OBJ reader is fuzzed, 8000 inputs unless given; COPPICE_FUZZ_SEED another seed.
+# COPPICE_FUZZ_SECONDS is how long each reader is fuzzed, some thousand inputs unless given; COPPICE_FUZZ_SEED another seed.
 set -euo pipefail
 source "$(dirname "$(realpath "${BASH_SOURCE[0]}")")/host/setup.sh"
 
@@ -84,17 +84,17 @@ host_tests_sanitized() {
   ((failures == 0))
 }
 
-# Coverage-guided, from the corpus on. What it finds new stays in the build folder and is where the next run
-# begins. By the same seed, as many inputs and the same addresses (libFuzzer's choices depend on them) every time, so
-# that a program either passes or fails; 25 seconds are a hang, 5 may be a machine that paused.
-fuzz_obj_reader() {
-  local folder=$build_dir/sanitize/fuzz limit=-runs=8000 same_addresses=(setarch -R)
+# fuzz_reader NAME CORPUS INPUTS: coverage-guided, from the corpus on. What it finds new stays in the build folder and is
+# where the next run begins. By the same seed, as many inputs and the same addresses (libFuzzer's choices depend on them)
+# every time, so that a program either passes or fails; 25 seconds are a hang, 5 may be a machine that paused.
+fuzz_reader() {
+  local name=$1 corpus=$root/tests/fuzz/$2 limit=-runs=$3 folder=$build_dir/sanitize/fuzz/$1 same_addresses=(setarch -R)
   [[ -v COPPICE_FUZZ_SECONDS ]] && limit=-max_total_time=$COPPICE_FUZZ_SECONDS
   "${same_addresses[@]}" true 2>/dev/null || same_addresses=() # some containers forbid it
   mkdir -p "$folder/found"
-  "${same_addresses[@]}" "$build_dir/sanitize/obj_fuzzer" "$limit" -reload=0 -seed="${COPPICE_FUZZ_SEED:-1}" \
-    -timeout=25 -rss_limit_mb=2048 -max_len=4096 -dict="$root/tests/fuzz/obj.dict" \
-    -artifact_prefix="$folder/" "$folder/found" "$root/tests/fuzz/corpus" \
+  "${same_addresses[@]}" "$build_dir/sanitize/${name}_fuzzer" "$limit" -reload=0 -seed="${COPPICE_FUZZ_SEED:-1}" \
+    -timeout=25 -rss_limit_mb=2048 -max_len=4096 -dict="$root/tests/fuzz/$name.dict" \
+    -artifact_prefix="$folder/" "$folder/found" "$corpus" \
     >"$folder/fuzz.log" 2>&1 </dev/null && return
   tail -n 60 "$folder/fuzz.log" >&2
   return 1
@@ -113,11 +113,14 @@ fi
 check "format" format_is_clean
 timed "building everything" build ci "$build_dir"
 if command -v clang++ >/dev/null; then
-  timed "building everything by clang, host tests and fuzzer with sanitizers" build sanitize "$build_dir/sanitize"
+  timed "building everything by clang, host tests and fuzzers with sanitizers" build sanitize "$build_dir/sanitize"
   check "host tests under AddressSanitizer and UndefinedBehaviorSanitizer" host_tests_sanitized
-  check "the OBJ reader under libFuzzer" fuzz_obj_reader
+  check "the OBJ reader under libFuzzer" fuzz_reader obj corpus 8000
+  check "the glTF reader under libFuzzer" fuzz_reader gltf corpus_gltf 4000
+  check "the reader of scene files under libFuzzer" fuzz_reader scene_file corpus_scene_file 4000
+  check "the PLY reader under libFuzzer" fuzz_reader ply corpus_ply 4000
 else
-  say "no clang: nothing is compiled by it, there are no sanitizers, and the OBJ reader is not fuzzed"
+  say "no clang: nothing is compiled by it, there are no sanitizers, and no reader is fuzzed"
 fi
 for driver in "${drivers[@]:1}"; do
   check "device tests on $(describe_driver "$driver")" run_ctest_on "$driver" \

@@ -28,7 +28,8 @@ class ScenesCommand : public Command {
     if (files.talks()) {
       for (const Row& row : table.rows()) print(table.text(row));
       print(hard_ ? "Each takes a number of triangles and a seed: hard:NAME[:N[:SEED]]\n"
-                  : "Inputs that are hard on builders and tracers: coppice scenes --hard\n");
+                  : "Inputs that are hard on builders and tracers: coppice scenes --hard\n"
+                    "Files: .obj, .gltf, .glb, .ply, .anim, and scene files .json (docs/scenes.md)\n");
     }
     write_json(files.json, table.json());
     return 0;

@@ -111,7 +111,9 @@ void add_runs(CLI::App& app, std::uint32_t& runs, const std::string& help) {
 }
 
 void add_scene(CLI::App& app, SceneOptions& scene) {
-  app.add_option("SCENE", scene.spec, "an .obj file or a built-in scene")->capture_default_str();
+  app.add_option("SCENE", scene.spec,
+                 "a file (.obj, .gltf, .glb, .ply, .anim or scene file .json) or a built-in scene")
+      ->capture_default_str();
 }
 
 std::vector<std::string> device_builder_names() {

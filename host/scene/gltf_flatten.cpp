@@ -269,7 +269,13 @@ void GltfFlattener::look() {
   const double least = std::max(0.1 * bounds.extent(), 1e-30);
   eye.distance = std::isfinite(ahead) && ahead > least ? ahead : bounds.extent() > 0 ? bounds.extent() : 1.0;
   scene_.camera = camera_in(at, eye.distance, eye.vertical_fov_degrees);
-  if (!moves_[static_cast<std::size_t>(eye.node)]) eye.node = -1;
+  const bool is_sound = is_finite(scene_.camera->position) && is_finite(scene_.camera->target);
+  if (!is_sound) {
+    notes_.add("/nodes/" + std::to_string(eye.node),
+               "a camera that is not in the range of float is not used");
+    scene_.camera.reset();
+  }
+  if (!is_sound || !moves_[static_cast<std::size_t>(eye.node)]) eye.node = -1;
 }
 
 }  // namespace

@@ -205,7 +205,11 @@ void Composer::add(const ScenePart& part, const glm::dmat4& place) {
     scene_.camera = moved(*scene.camera, place * from_offset(scene));
     scene_.camera->position = glm::vec3(glm::dvec3(scene_.camera->position) - offset_);
     scene_.camera->target = glm::vec3(glm::dvec3(scene_.camera->target) - offset_);
-    if (scene.motion) rig_->parts.back().gives_camera = true;
+    if (!is_finite(scene_.camera->position) || !is_finite(scene_.camera->target)) {
+      scene_.camera.reset();
+    } else if (scene.motion) {
+      rig_->parts.back().gives_camera = true;
+    }
   }
 }
 

@@ -1,0 +1,102 @@
+#include "fuzz/scene_complaint.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "scene/bounds.h"
+#include "scene/motion.h"
+
+namespace coppice {
+namespace {
+
+bool is_sound(const Material& material) {
+  return is_finite(material.diffuse) && is_finite(material.specular) && is_finite(material.emission) &&
+         std::isfinite(material.shininess) && std::isfinite(material.index_of_refraction) &&
+         material.opacity >= 0 && material.opacity <= 1;
+}
+
+std::string complaint_about_motion(const Scene& scene, const Motion& motion) {
+  const std::size_t count = scene.positions.size();
+  const auto is_inside = [&](VertexRange range) {
+    return range.first <= count && range.count <= count - range.first;
+  };
+  if (motion.rest.size() != count) return "vertices at rest";
+  if (!(motion.duration_seconds > 0) || !(motion.frames_per_second > 0)) return "duration";
+  const Pose pose = pose_at(motion, 0);
+  for (const VertexSequence& sequence : motion.sequences) {
+    if (!is_inside(sequence.vertices) || sequence.vertices.count == 0) return "range of a sequence";
+    if (sequence.positions.empty() || sequence.positions.size() % sequence.vertices.count != 0)
+      return "frames";
+  }
+  for (const MorphTarget& morph : motion.morphs) {
+    if (!is_inside(morph.vertices) || morph.offsets.size() != morph.vertices.count)
+      return "range of a morph target";
+    if (morph.weight >= pose.morph_weights.size()) return "weight of a morph target";
+  }
+  for (const Deformation& deformation : motion.deformations) {
+    if (!is_inside(deformation.vertices) || deformation.piece_vertices == 0) return "range of a deformation";
+    if (!(deformation.size > 0) || !(deformation.seconds > 0)) return "size of a deformation";
+  }
+  if (motion.joints.size() != motion.weights.size()) return "count of weights";
+  if (!motion.joints.empty() && motion.joints.size() != count) return "count of joints";
+  for (const auto& joints : motion.joints) {
+    if (*std::max_element(joints.begin(), joints.end()) >= pose.joints.size()) return "joint";
+  }
+  if (!is_same(positions_at(motion, 0), scene.positions)) return "positions at second 0";
+  for (const double seconds : {-1.0, 0.37 * motion.duration_seconds, 1e9}) {
+    const Pose other = pose_at(motion, seconds);
+    if (other.joints.size() != pose.joints.size()) return "joints of another time";
+    if (other.morph_weights.size() != pose.morph_weights.size()) return "weights of another time";
+    positions_at(motion, seconds);
+  }
+  return "";
+}
+
+}  // namespace
+
+bool is_one_line(const std::string& text) {
+  return !text.empty() && std::none_of(text.begin(), text.end(), [](char c) {
+    return static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
+  });
+}
+
+bool is_same(const std::vector<glm::vec3>& a, const std::vector<glm::vec3>& b) {
+  const auto is_same_bits = [](glm::vec3 p, glm::vec3 q) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const bool are_nan = std::isnan(p[axis]) && std::isnan(q[axis]);
+      if (!are_nan && std::bit_cast<std::uint32_t>(p[axis]) != std::bit_cast<std::uint32_t>(q[axis])) {
+        return false;
+      }
+    }
+    return true;
+  };
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), is_same_bits);
+}
+
+std::string complaint_about(const Scene& scene) {
+  for (const glm::uvec3 triangle : scene.indices) {
+    if (std::max({triangle.x, triangle.y, triangle.z}) >= scene.positions.size()) return "vertex index";
+  }
+  if (scene.material_index.size() != scene.indices.size()) return "count of material indices";
+  for (const std::uint32_t index : scene.material_index) {
+    if (index >= scene.materials.size()) return "material index";
+  }
+  if (scene.materials.empty()) return "no material";
+  for (const Material& material : scene.materials) {
+    if (!is_sound(material)) return "material '" + material.name + "'";
+  }
+  for (const std::string& warning : scene.warnings) {
+    if (!is_one_line(warning)) return "warning '" + warning + "'";
+  }
+  if (!is_finite(scene.light.direction)) return "light";
+  if (scene.motion) {
+    const std::string complaint = complaint_about_motion(scene, *scene.motion);
+    if (!complaint.empty()) return complaint;
+  }
+  const Camera camera = frame_scene(scene, 1.5f);
+  if (!is_finite(camera.position) || !is_finite(camera.target) || !is_finite(camera.up)) return "camera";
+  return "";
+}
+
+}  // namespace coppice
