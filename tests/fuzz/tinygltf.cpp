@@ -5,6 +5,7 @@
 #define TINYGLTF_NO_INCLUDE_STB_IMAGE
 #define TINYGLTF_NO_INCLUDE_STB_IMAGE_WRITE
 #define TINYGLTF_NO_INCLUDE_JSON
-#include <tiny_gltf.h>
-
+// clang-format off: it has no include of its own
 #include <nlohmann/json.hpp>
+#include <tiny_gltf.h>
+// clang-format on
