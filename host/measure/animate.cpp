@@ -15,10 +15,30 @@ namespace {
 
 using AnimateClock = std::chrono::steady_clock;
 
+// The film of any time, which is made once where the camera stands still.
+class Films {
+ public:
+  Films(const Scene& scene, const AnimateRuns& runs)
+      : motion_(runs.camera.empty() ? scene.motion.get() : nullptr),
+        trace_(runs.trace),
+        still_(make_film(scene, runs.camera, trace_.width, trace_.height, trace_.samples)) {}
+
+  Film at(double seconds) const {
+    if (!motion_) return still_;
+    const std::optional<Camera> camera = pose_at(*motion_, seconds).camera;
+    return camera ? make_film(*camera, trace_.width, trace_.height, trace_.samples) : still_;
+  }
+
+ private:
+  const Motion* motion_;
+  TraceOptions trace_;
+  Film still_;
+};
+
 class FrameLoop {
  public:
-  FrameLoop(const Scene& scene, const AnimateRuns& runs, MovingFrames& frames, AnimateReport& report)
-      : scene_(scene), runs_(runs), frames_(frames), report_(report) {}
+  FrameLoop(const Films& films, const AnimateRuns& runs, MovingFrames& frames, AnimateReport& report)
+      : films_(films), runs_(runs), frames_(frames), report_(report) {}
 
   void run() {
     const InterruptionGuard guard;
@@ -33,7 +53,7 @@ class FrameLoop {
       if (!frames_.has_room()) take();
       if (frames_.is_empty()) last_done_ = AnimateClock::now();
       const double seconds = number / runs_.frames_per_second;
-      frames_.submit(seconds, film_at(scene_, seconds, runs_.camera, runs_.trace));
+      frames_.submit(seconds, films_.at(seconds));
       under_way_.push_back(number);
     }
     while (!frames_.is_empty()) take();
@@ -57,7 +77,7 @@ class FrameLoop {
     if (runs_.picture) runs_.picture(number, frame.image);
   }
 
-  const Scene& scene_;
+  const Films& films_;
   const AnimateRuns& runs_;
   MovingFrames& frames_;
   AnimateReport& report_;
@@ -86,14 +106,6 @@ void split_kernels(CheckedDevice& device, MovingFrames& frames, const AnimateRun
 
 }  // namespace
 
-Film film_at(const Scene& scene, double seconds, std::span<const double> camera, const TraceOptions& trace) {
-  if (!camera.empty() || !scene.motion)
-    return make_film(scene, camera, trace.width, trace.height, trace.samples);
-  const Pose pose = pose_at(*scene.motion, seconds);
-  if (!pose.camera) return make_film(scene, {}, trace.width, trace.height, trace.samples);
-  return make_film(*pose.camera, trace.width, trace.height, trace.samples);
-}
-
 AnimateReport animate(CheckedDevice& device, const Scene& scene, const AnimateRuns& runs) {
   const SceneArrays arrays = scene_arrays(scene);
   AnimateReport report;
@@ -116,11 +128,12 @@ AnimateReport animate(CheckedDevice& device, const Scene& scene, const AnimateRu
                               .tree_cost = runs.tree_cost};
   MovingFrames frames(device.device(), scene, options);
   report.device_bytes = device_bytes(frames.layout());
+  const Films films(scene, runs);
   const InterruptionGuard guard;
   const double first = runs.first / runs.frames_per_second;  // compiles the kernels
-  frames.submit(first, film_at(scene, first, runs.camera, runs.trace));
+  frames.submit(first, films.at(first));
   frames.take();
-  FrameLoop(scene, runs, frames, report).run();
+  FrameLoop(films, runs, frames, report).run();
   if (runs.split) split_kernels(device, frames, runs, report);
   return report;
 }

@@ -59,9 +59,6 @@ struct AnimateReport {
 // first frame, which then comes again. Throws Interrupted on SIGINT or SIGTERM between two frames.
 AnimateReport animate(CheckedDevice& device, const Scene& scene, const AnimateRuns& runs);
 
-// The film of that time: by `camera`, or the camera that moves, or the scene's.
-Film film_at(const Scene& scene, double seconds, std::span<const double> camera, const TraceOptions& trace);
-
 // As --update has it.
 const char* word_of_update(Update update);
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "scene/bounds.h"
+#include "scene/motion.h"
 #include "scene/scene.h"
 
 namespace coppice {
@@ -34,6 +35,17 @@ glm::vec3 clamp_to_float(glm::dvec3 p) {
   return glm::vec3{glm::clamp(p, -limit, limit)};
 }
 
+// The scene as it stands at later times of a cycle; none where nothing moves.
+std::vector<Scene> later_moments(const Scene& scene) {
+  constexpr int count = 8;
+  std::vector<Scene> moments;
+  for (int k = 1; scene.motion && k < count; ++k) {
+    moments.push_back(scene);
+    moments.back().positions = positions_at(*scene.motion, scene.motion->duration_seconds * k / count);
+  }
+  return moments;
+}
+
 }  // namespace
 
 Camera frame_scene(const Scene& scene, float aspect) {
@@ -42,10 +54,21 @@ Camera frame_scene(const Scene& scene, float aspect) {
   Camera camera;
   const glm::dvec3 toward_camera = glm::normalize(glm::dvec3{0.55, 0.42, 0.83});
   const double tan_y = std::tan(glm::radians(static_cast<double>(camera.vertical_fov_degrees)) / 2);
-  const Bounds bounds = visible_bounds(scene);
+  const std::vector<Scene> later = later_moments(scene);
+  Bounds bounds = visible_bounds(scene);
+  for (const Scene& moment : later) {
+    const Bounds its = visible_bounds(moment);
+    bounds.low = glm::min(bounds.low, its.low);
+    bounds.high = glm::max(bounds.high, its.high);
+  }
   const glm::dvec3 centre = bounds.centre();
   const auto distance_of = [&](auto counts) {
-    return 1.05 * viewing_distance(scene, counts, centre, toward_camera, tan_y * aspect, tan_y);
+    const auto at = [&](const Scene& moment) {
+      return viewing_distance(moment, counts, centre, toward_camera, tan_y * aspect, tan_y);
+    };
+    double distance = at(scene);
+    for (const Scene& moment : later) distance = std::max(distance, at(moment));
+    return 1.05 * distance;
   };
   double distance = distance_of(is_visible);
   if (distance == 0) distance = distance_of(is_active);
