@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <set>
 #include <utility>
 
 #include "measure/copy_limit.h"
 #include "pipeline/batch.h"
+#include "pipeline/refit.h"
 #include "pipeline/scan_plan.h"
 #include "pipeline/trace_any.h"
 #include "pipeline/wide_plan.h"
@@ -39,7 +41,7 @@ constexpr Frame frames[] = {
     {300, DeviceBuilder::ploc, true, Walk::brute_force},
     {SORT_SCAN_TILE + 100, DeviceBuilder::ploc, false, Walk::binary}};  // one tile alone sorts without a scan
 constexpr std::size_t scan_and_copy = std::size(frames), inputs = scan_and_copy + 1, vertices = inputs + 1,
-                      chain_count = vertices + 1;
+                      refits = vertices + 1, chain_count = refits + 1;
 
 using Spoil = std::function<void(std::vector<Step>&, const LockstepExecutor&)>;
 
@@ -146,8 +148,35 @@ Found run_vertices(Device& device, const Spoil& spoil) {
   return {std::move(difference), {executor.nearly().begin(), executor.nearly().end()}};
 }
 
+// A tree in which some triangles are absent, all of which then go elsewhere; high enough for all stages.
+Found run_refit(Device& device, const Spoil& spoil) {
+  std::vector<Triangle> triangles = scene_arrays(find_hard_case("nested")->make(1000, 1)).triangles;
+  std::vector<Triangle> moved = triangles;
+  for (Triangle& t : moved) t = {t.a + 0.25f, t.b + 0.25f, t.c + 0.25f};
+  const auto count = static_cast<std::uint32_t>(triangles.size());
+  for (std::uint32_t i = 0; i < count; i += 9) triangles[i].b.y = std::numeric_limits<float>::infinity();
+  Layout layout(device.properties().max_block_bytes);
+  const auto corners = layout.add<Triangle>("corners", count);
+  const BuildPlan build = plan_build(layout, count, {});
+  const RefitPlan refit = plan_refit(layout, build, &build);
+  LockstepExecutor executor(device, layout);
+  executor.upload(build.triangles, std::span<const Triangle>(triangles));
+  executor.upload(corners, std::span<const Triangle>(moved));
+  auto difference = executor.run([&](Chain& chain) {
+    append_build(chain, build);
+    append_refit_order(chain, build, refit);
+    append_triangles(chain, build.triangles,
+                     {.vertices = {chain.at(corners).value}, .vertex_count = 3 * count});
+    append_refit(chain, build, refit);
+    append_tree_cost(chain, build, refit);
+    spoil(chain.steps(), executor);
+  });
+  return {std::move(difference), {executor.nearly().begin(), executor.nearly().end()}};
+}
+
 Found run_chain(Device& device, std::size_t chain, const Spoil& spoil) {
   if (chain == vertices) return run_vertices(device, spoil);
+  if (chain == refits) return run_refit(device, spoil);
   if (chain == inputs) return run_inputs(device, spoil);
   return chain == scan_and_copy ? run_scan_and_copy(device, spoil) : run_frame(device, frames[chain], spoil);
 }

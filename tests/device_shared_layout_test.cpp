@@ -77,7 +77,9 @@ TEST(SharedLayout, ElementsOfEverySlot) {
   EXPECT_SAME_LAYOUT(DeformStep);
   EXPECT_SAME_LAYOUT(Joint);
   EXPECT_SAME_LAYOUT(VertexJoints);
-  EXPECT_EQ(seen.size(), 22u);
+  EXPECT_SAME_LAYOUT(RefitLevel);
+  EXPECT_SAME_LAYOUT(RefitState);
+  EXPECT_EQ(seen.size(), 24u);
 }
 
 }  // namespace
