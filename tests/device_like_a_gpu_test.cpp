@@ -7,6 +7,7 @@
 #include "analysis/tree_hash.h"
 #include "pipeline/batch.h"
 #include "pipeline/ray_tracing.h"
+#include "pipeline/refit.h"
 #include "render/frame.h"
 #include "scene/hard_cases.h"
 #include "stages/gpu_executor.h"
@@ -69,6 +70,33 @@ TEST_F(LikeAGpu, SameTreesByEveryBuilder) {
       }
     }
   }
+}
+
+// Kernel by kernel beside the twins, of more than one tile of the sort.
+TEST_F(LikeAGpu, SameRefits) {
+  const std::vector<Triangle> triangles = random_triangles(20000, 6), moved = random_triangles(20000, 7);
+  Layout layout(device().properties().max_block_bytes);
+  BuildPlan plan = plan_build(layout, 20000, {});
+  const WidePlan wide = plan_wide(layout, plan, &plan);
+  const RefitPlan refit = plan_refit(layout, plan, &plan);
+  LockstepExecutor executor(device(), layout);
+  const auto expect_no_difference = [&](const auto& append) {
+    const auto difference = executor.run(append);
+    EXPECT_FALSE(difference) << difference->stage << ", " << difference->slot << "[" << difference->index
+                             << "]";
+  };
+  executor.upload(plan.triangles, std::span<const Triangle>(triangles));
+  expect_no_difference([&](Chain& chain) {
+    append_build(chain, plan);
+    append_wide(chain, plan, wide);
+    append_refit_order(chain, plan, refit);
+  });
+  executor.upload(plan.triangles, std::span<const Triangle>(moved));
+  expect_no_difference([&](Chain& chain) {
+    append_refit(chain, plan, refit);
+    append_wide_boxes(chain, plan, wide);
+    append_tree_cost(chain, plan, refit);
+  });
 }
 
 // Of several tiles of the sort, of which the last ones have no keys.
