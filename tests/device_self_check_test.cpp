@@ -60,7 +60,7 @@ DeviceUse traces_by(Walk walk) {
 // What objects of the library do beside.
 DeviceUse library_use(Walk walk = Walk::binary) {
   DeviceUse use = traces_by(walk);
-  use.inputs = use.batches = use.sorts = use.scans = use.every_ray = true;
+  use.wide = use.refits = use.inputs = use.batches = use.sorts = use.scans = use.every_ray = true;
   return use;
 }
 
@@ -163,6 +163,11 @@ TEST_F(SelfCheck, RefusesADeviceByWhatTheLibraryDoes) {
                                                         {"wide_sizes_rest", "computes a wrong tree"},
                                                         {"gather_triangles", "computes a wrong tree"},
                                                         {"box_bounds", "computes a wrong tree"},
+                                                        {"refit_absent", "refits a tree wrong"},
+                                                        {"refit_keys", "refits a tree wrong"},
+                                                        {"refit_boxes", "refits a tree wrong"},
+                                                        {"refit_appeared", "refits a tree wrong"},
+                                                        {"tree_areas", "refits a tree wrong"},
                                                         {"batch_build", "computes a wrong tree"},
                                                         {"trace_misses", "finds wrong hits"},
                                                         {"trace_any", "finds wrong hits"},

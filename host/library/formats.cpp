@@ -3,6 +3,7 @@
 
 #include "coppice/types.h"
 #include "interface/batch.h"
+#include "interface/refit.h"
 #include "interface/trace.h"
 
 namespace coppice {
@@ -15,7 +16,8 @@ static_assert(sizeof(CoppiceTriangle) == sizeof(Triangle) && sizeof(CoppiceBox) 
               sizeof(CoppiceRay) == sizeof(Ray) && sizeof(CoppiceHit) == sizeof(Hit) &&
               sizeof(CoppiceCandidate) == sizeof(BoxCandidate) &&
               sizeof(CoppiceRange) == sizeof(BatchRange) && sizeof(CoppiceBatchTree) == sizeof(BatchTree) &&
-              sizeof(CoppiceTreeState) == sizeof(BuildState));
+              sizeof(CoppiceTreeState) == sizeof(BuildState) &&
+              sizeof(CoppiceRefitState) == sizeof(RefitState));
 SAME_PLACE(CoppiceNode, child, Node, child);
 SAME_PLACE(CoppiceNode, height, Node, height);
 SAME_PLACE(CoppiceWideNode, exponents, WideNode, exponents);
@@ -37,6 +39,7 @@ SAME_PLACE(CoppiceTreeState, primitive_count, BuildState, primitive_count);
 static_assert(COPPICE_WIDE_LEAF == WIDE_LEAF && COPPICE_WIDE_EMPTY == WIDE_EMPTY &&
               COPPICE_NO_PRIMITIVE == NO_TRIANGLE && COPPICE_PRIMITIVE_NOT_OPAQUE == PRIMITIVE_NOT_OPAQUE &&
               COPPICE_BATCH_MAX_PRIMITIVES == BATCH_MAX_PRIMITIVES);
+static_assert(COPPICE_ERROR_REFIT_TOO_DEEP == ERROR_REFIT_TOO_DEEP);
 static_assert(COPPICE_ERROR_SORT_LOOKBACK == ERROR_SORT_LOOKBACK &&
               COPPICE_ERROR_PLOC_LOOKBACK == ERROR_PLOC_LOOKBACK &&
               COPPICE_ERROR_PLOC_ROUNDS == ERROR_PLOC_ROUNDS &&

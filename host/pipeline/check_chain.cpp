@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "pipeline/batch.h"
+#include "pipeline/refit.h"
 #include "pipeline/scan_plan.h"
 #include "pipeline/trace_any.h"
 #include "pipeline/wide_plan.h"
@@ -26,6 +27,7 @@ static_assert(chain_leaves / WIDE_CHILDREN >= WIDE_DISPATCHED_LEVELS);
 constexpr double check_limit_seconds = 60;
 
 constexpr const char* wrong_tree = "computes a wrong tree";
+constexpr const char* wrong_refit = "refits a tree wrong";
 constexpr const char* wrong_hits = "finds wrong hits";
 
 class Random {
@@ -105,6 +107,7 @@ class Check {
     if (use.batches) add_batch();
     if (use.sorts) add_sort();
     if (use.scans) add_scan();
+    if (use.refits) add_refit();  // last, as what others have goes wrong here, too
   }
 
   CheckChain chain() && { return std::move(chain_); }
@@ -146,6 +149,37 @@ class Check {
     chain_.upload(tree.nodes, std::span(nodes));
     chain_.upload(tree.state, std::span<const BuildState>(&state, 1));
     add_wide(tree, wide);
+  }
+
+  // A tree of its own, without some of the triangles, all of which then take another one's place, so that
+  // some appear.
+  void add_refit() {
+    std::vector<Triangle> triangles = triangles_, moved = triangles_;
+    std::ranges::reverse(moved);
+    for (std::size_t i = 0; i < triangles.size(); i += 7) {
+      triangles[i].a.x = std::numeric_limits<float>::infinity();
+      moved[i / 2].b.y = std::numeric_limits<float>::infinity();
+    }
+    const Slot<Triangle> vertices = chain_.add("moved", moved);
+    BuildPlan build = plan_build(layout(), check_triangles, options_);
+    chain_.upload(build.triangles, std::span<const Triangle>(triangles));
+    std::optional<WidePlan> wide;
+    if (use_.wide) wide = plan_wide(layout(), build, &build, max_turns_);
+    const RefitPlan refit = plan_refit(layout(), build, &build, max_turns_);
+    chain_.append([=](Chain& chain) {
+      append_build(chain, build);
+      if (wide) append_wide(chain, build, *wide);
+      append_refit_order(chain, build, refit);
+      append_triangles(
+          chain, {check_triangles, build.triangles, build.boxes, build.state},
+          {VertexTriangles{.vertices = {chain.at(vertices).value}, .vertex_count = 3 * check_triangles}, {}});
+      append_refit(chain, build, refit);
+      if (wide) append_wide_boxes(chain, build, *wide);
+      append_tree_cost(chain, build, refit);
+    });
+    chain_.compare(build.nodes, wrong_refit);
+    chain_.compare(build.wide_nodes, wrong_refit);
+    chain_.compare(refit.state, wrong_refit);
   }
 
   void add_trace(const TraceOptions& options) {

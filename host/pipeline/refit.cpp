@@ -19,6 +19,9 @@ std::uint32_t leaves_of(const TreeSlots& tree) {
   return static_cast<std::uint32_t>((tree.nodes.count + 1) / 2);
 }
 
+// The most that a tree of the plan has.
+std::uint32_t nodes_of(const RefitPlan& plan) { return 2 * static_cast<std::uint32_t>(plan.order.count) + 1; }
+
 // The first `count` entries of an old slot.
 Slot<uint> first_of(const Slot<uint>& old, std::uint64_t count) {
   check_fits(old, count);
@@ -65,31 +68,26 @@ uvec3 rows_of(std::uint32_t count, std::uint32_t size) {
 }  // namespace
 
 RefitPlan plan_refit(Layout& layout, const TreeSlots& tree, const BuildPlan* finished,
-                     std::uint32_t max_turns) {
+                     std::uint32_t max_turns, bool keep) {
   RefitPlan plan;
   const std::uint32_t leaves = leaves_of(tree), pairs = leaves == 0 ? 0 : leaves - 1;
+  const Memory kept = keep ? Memory::update : Memory::scratch;
   plan.dispatched_levels = max_turns == 0xffffffffu ? REFIT_DISPATCHED_LEVELS : REFIT_MAX_HEIGHT;
   plan.state = layout.add<RefitState>("refit_state", 1, Memory::tree);
-  plan.levels = layout.add<RefitLevel>("refit_levels", REFIT_MAX_HEIGHT + 1);
-  plan.absent = layout.add<uint>("refit_absent", divide_up(tree.triangle_count, 32u));
-  plan.pair_count = layout.add<uint>("refit_pair_count", 1);
-  if (finished) {
-    plan.keys[0] = first_of(finished->keys[0], pairs);
-    plan.parents = first_of(finished->values[0], pairs);
-    plan.keys[1] = first_of(finished->keys[1], pairs);
-    plan.order = first_of(finished->values[1], pairs);
-  } else {
-    plan.keys[0] = layout.add<uint>("refit_keys", pairs);
-    plan.parents = layout.add<uint>("refit_parents", pairs);
-    plan.keys[1] = layout.add<uint>("refit_sorted_keys", pairs);
-    plan.order = layout.add<uint>("refit_order", pairs);
-  }
+  plan.levels = layout.add<RefitLevel>("refit_levels", REFIT_MAX_HEIGHT + 1, kept);
+  plan.absent = layout.add<uint>("refit_absent", divide_up(tree.triangle_count, 32u), kept);
+  plan.pair_count = layout.add<uint>("refit_pair_count", 1, kept);
+  plan.tile_areas = layout.add<float>(
+      "tree_tile_areas", divide_up(static_cast<std::uint32_t>(tree.nodes.count), TREE_AREAS_TILE), kept);
+  plan.keys[0] = finished ? first_of(finished->keys[0], pairs) : layout.add<uint>("refit_keys", pairs);
+  plan.parents = finished ? first_of(finished->values[0], pairs) : layout.add<uint>("refit_parents", pairs);
+  plan.keys[1] = finished ? first_of(finished->keys[1], pairs) : layout.add<uint>("refit_sorted_keys", pairs);
+  plan.order =
+      finished && !keep ? first_of(finished->values[1], pairs) : layout.add<uint>("refit_order", pairs, kept);
   set_tiles(plan, pairs);
   const std::uint32_t most_tiles = std::min(divide_up(pairs, SORT_SCAN_TILE), most_scanned_tiles);
   plan.tile_digits = layout.add<uint>("refit_tile_digits", std::uint64_t{most_tiles} << REFIT_KEY_BITS);
   plan.sort_state = layout.add<BuildState>("refit_sort_state", 1);
-  plan.tile_areas = layout.add<float>(
-      "tree_tile_areas", divide_up(static_cast<std::uint32_t>(tree.nodes.count), TREE_AREAS_TILE));
   return plan;
 }
 
@@ -103,8 +101,8 @@ RefitPlan with_count(const RefitPlan& plan, std::uint32_t leaves) {
 }
 
 void append_refit_order(Chain& chain, const TreeSlots& tree, const RefitPlan& plan) {
-  const auto nodes = static_cast<std::uint32_t>(tree.nodes.count);
-  if (nodes == 0) return;
+  if (tree.nodes.count == 0) return;
+  const std::uint32_t nodes = nodes_of(plan);
   chain.run(stages::refit_absent,
             {chain.at(tree.triangles), chain.at(plan.absent), chain.at(tree.state), tree.triangle_count, 0},
             groups_of(tree.triangle_count, REFIT_ABSENT_TILE));
@@ -141,8 +139,8 @@ void append_refit(Chain& chain, const TreeSlots& tree, const RefitPlan& plan) {
 }
 
 void append_tree_cost(Chain& chain, const TreeSlots& tree, const RefitPlan& plan) {
-  const auto nodes = static_cast<std::uint32_t>(tree.nodes.count);
-  if (nodes == 0) return;
+  if (tree.nodes.count == 0) return;
+  const std::uint32_t nodes = nodes_of(plan);
   chain.run(stages::tree_areas,
             {chain.at(tree.nodes), chain.at(plan.tile_areas), chain.at(tree.state), nodes, 0},
             rows_of(nodes, TREE_AREAS_TILE));

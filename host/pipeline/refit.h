@@ -26,9 +26,10 @@ struct RefitPlan {
 
 // What refits need beside a tree, whose slots may be those of an uploaded one. Where a build on the device
 // leaves the tree, its keys and values are used once more: then every build needs a new append_refit_order
-// behind it. `max_turns` as for plan_wide. Throws LayoutError if a slot does not fit a block.
+// behind it. `max_turns` as for plan_wide. `keep`: what lives as long as the tree is refitted is in
+// Memory::update, and nothing else uses it. Throws LayoutError if a slot does not fit a block.
 RefitPlan plan_refit(Layout& layout, const TreeSlots& tree, const BuildPlan* finished = nullptr,
-                     std::uint32_t max_turns = 0xffffffffu);
+                     std::uint32_t max_turns = 0xffffffffu, bool keep = false);
 
 // The plan for a tree of fewer leaves, in the same slots. Allocates nothing.
 RefitPlan with_count(const RefitPlan& plan, std::uint32_t leaves);

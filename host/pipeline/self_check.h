@@ -16,6 +16,7 @@ struct DeviceUse {
   std::vector<TraceOptions> traces{};  // every tracer that it runs; the check has rays of its own
   std::uint32_t triangle_count = 0;    // of the scene that it traces, by which a walk may be chosen
   bool wide = false;                   // the tree that is built is converted, too, whoever walks it
+  bool refits = false;                 // of trees over triangles that move
   bool inputs = false;                 // vertices, indices, transforms and boxes
   bool batches = false;                // of small trees
   bool sorts = false;                  // in place, see sorted_in_place()

@@ -79,8 +79,8 @@ std::string line_of(const DeviceUse& use) {
     text << ";trace:" << name_of(trace.walk) << ':' << trace.max_turns << ':' << trace.visits_per_turn << ':'
          << trace.stack_entries << ':' << trace.triangle_test << ':' << trace.box_test;
   }
-  text << ";others:" << use.wide << use.inputs << use.batches << use.sorts << use.sorts_values << use.scans
-       << use.every_ray;
+  text << ";others:" << use.wide << use.refits << use.inputs << use.batches << use.sorts << use.sorts_values
+       << use.scans << use.every_ray;
   return text.str();
 }
 

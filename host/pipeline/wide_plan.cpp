@@ -27,21 +27,23 @@ Slot<T> instead_of(const Slot<Old>& old, std::uint64_t first_byte, std::uint64_t
   return {{old.place.block, old.place.offset + first_byte}, count};
 }
 
-void add_scratch(Layout& layout, WidePlan& plan, std::uint32_t bound, const BuildPlan* finished) {
+// What refits go by is kept apart if it is to be kept.
+void add_scratch(Layout& layout, WidePlan& plan, std::uint32_t bound, const BuildPlan* finished, bool keep) {
   const std::uint64_t children = std::uint64_t{bound} * WIDE_CHILDREN;
-  if (finished) {
-    const std::uint64_t entries_bytes = std::uint64_t{bound} * sizeof(WideEntry),
-                        column = std::uint64_t{bound} * 4;
+  const std::uint64_t entries_bytes = std::uint64_t{bound} * sizeof(WideEntry),
+                      column = std::uint64_t{bound} * 4;
+  if (finished && !keep) {
     plan.children = instead_of<uint>(finished->clusters[0], 0, children);
     plan.entries = instead_of<WideEntry>(finished->boxes, 0, bound);
-    plan.sizes = instead_of<uint>(finished->boxes, entries_bytes, bound);
     plan.offsets = instead_of<uint>(finished->boxes, entries_bytes + column, bound);
-    return;
+  } else {
+    const Memory kept = keep ? Memory::update : Memory::scratch;
+    plan.children = layout.add<uint>("wide_children", children, kept);
+    plan.entries = layout.add<WideEntry>("wide_entries", bound, kept);
+    plan.offsets = layout.add<uint>("wide_offsets", bound, kept);
   }
-  plan.children = layout.add<uint>("wide_children", children);
-  plan.entries = layout.add<WideEntry>("wide_entries", bound);
-  plan.sizes = layout.add<uint>("wide_sizes", bound);
-  plan.offsets = layout.add<uint>("wide_offsets", bound);
+  plan.sizes = finished ? instead_of<uint>(finished->boxes, entries_bytes, bound)
+                        : layout.add<uint>("wide_sizes", bound);
 }
 
 }  // namespace
@@ -51,7 +53,8 @@ std::uint32_t wide_nodes_bound(std::uint32_t leaves) {
   return static_cast<std::uint32_t>(3 * std::uint64_t{leaves} / 5);
 }
 
-WidePlan plan_wide(Layout& layout, TreeSlots& tree, const BuildPlan* finished, std::uint32_t max_turns) {
+WidePlan plan_wide(Layout& layout, TreeSlots& tree, const BuildPlan* finished, std::uint32_t max_turns,
+                   bool keep) {
   WidePlan plan;
   const auto leaves = static_cast<std::uint32_t>((tree.nodes.count + 1) / 2);
   const std::uint32_t bound = wide_nodes_bound(leaves);
@@ -64,7 +67,7 @@ WidePlan plan_wide(Layout& layout, TreeSlots& tree, const BuildPlan* finished, s
   plan.tile_sums = layout.add<uint>("wide_tile_sums", divide_up(bound, WIDE_TILE) + plan.levels_bound);
   plan.block_sums =
       layout.add<uint>("wide_block_sums", divide_up(bound, WIDE_TILE * WIDE_BLOCK) + plan.levels_bound);
-  add_scratch(layout, plan, bound, finished);
+  add_scratch(layout, plan, bound, finished, keep);
   tree.wide_nodes = layout.add<WideNode>("wide_nodes", bound, Memory::tree);
   tree.wide_counts = layout.add<WideCounts>("wide_counts", 1, Memory::tree);
   return plan;

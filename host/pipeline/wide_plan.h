@@ -24,9 +24,10 @@ std::uint32_t wide_nodes_bound(std::uint32_t leaves);
 // Adds the wide nodes to the tree's slots, which may be those of an uploaded tree. Where a build on the
 // device has left the tree its scratch is used once more, and none is added. `max_turns`: of a kernel's
 // loops, fewer where a driver ends long loops by itself; there, and in large trees, no subgroup takes several
-// levels. Throws LayoutError if a slot does not fit a block.
+// levels. `keep`: what append_wide_boxes goes by is in Memory::update, and nothing else uses it. Throws
+// LayoutError if a slot does not fit a block.
 WidePlan plan_wide(Layout& layout, TreeSlots& tree, const BuildPlan* finished = nullptr,
-                   std::uint32_t max_turns = 0xffffffffu);
+                   std::uint32_t max_turns = 0xffffffffu, bool keep = false);
 
 // The plan for a tree of fewer leaves, in the same slots. Allocates nothing.
 WidePlan with_count(const WidePlan& plan, std::uint32_t leaves);

@@ -8,8 +8,8 @@
 namespace coppice {
 
 // Who keeps a slot. It matters only where these lie apart: each is a block of its own then.
-enum class Memory : std::uint32_t { scratch, tree, keys, values, source, target };
-inline constexpr std::uint32_t memory_kinds = 6;
+enum class Memory : std::uint32_t { scratch, tree, keys, values, source, target, update };
+inline constexpr std::uint32_t memory_kinds = 7;
 
 // A position in device or host memory, before it has an address.
 struct Place {

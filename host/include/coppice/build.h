@@ -29,12 +29,13 @@ struct TreeOptions {
   std::uint32_t radius = 16;       // search radius of PLOC and H-PLOC, 1 to 100
   std::uint32_t morton_bits = 30;  // 30 or 60
   bool wide = false;               // wide nodes beside the binary ones
+  bool refits = false;             // trees over triangles can be refitted when these have moved
 };
 
 struct BuildSizes {
   VkDeviceSize tree_bytes = 0;     // kept as long as the tree is used
   VkDeviceSize scratch_bytes = 0;  // free again when the build is done
-  VkDeviceSize update_bytes = 0;   // scratch of a refit; there is none yet: 0
+  VkDeviceSize update_bytes = 0;   // kept as long as the tree is refitted; 0 without refits
 };
 
 // Indexed or plain triangles. They are copied into the tree's memory, with denormal coordinates as zero: the
@@ -66,6 +67,7 @@ struct TreeAddresses {
   VkDeviceAddress triangles = 0;    // CoppiceTriangle, by their indices; null for boxes
   VkDeviceAddress wide_nodes = 0;   // CoppiceWideNode; root at 0; null without them
   VkDeviceAddress wide_counts = 0;  // their number is the first word; null without them
+  VkDeviceAddress refit_state = 0;  // CoppiceRefitState of the last refit; null without refits
 };
 
 // Builds of up to so many primitives, any number of them; one can be used by several threads at once. The
@@ -88,6 +90,25 @@ class COPPICE_API Builder {
                  const MemoryRange& scratch, KernelQueries* queries = nullptr) const;
   void cmd_build(VkCommandBuffer commands, const BoxInput& input, const MemoryRange& tree,
                  const MemoryRange& scratch, KernelQueries* queries = nullptr) const;
+
+  // The same of a builder with `refits`, for a tree that will be refitted: `update`, which must be free of
+  // tree and scratch, too, is written and belongs to the tree. (The other calls build trees that will not.)
+  void cmd_build(VkCommandBuffer commands, const TriangleInput& input, const MemoryRange& tree,
+                 const MemoryRange& scratch, const MemoryRange& update,
+                 KernelQueries* queries = nullptr) const;
+
+  // Gives all nodes of the tree, wide ones too, the boxes of the triangles as `input` has them now, whose
+  // order and number are those of the build. The topology stays: the more the triangles have moved among each
+  // other, the slower are traces. A triangle that is no longer finite vanishes, and may come back; one that
+  // was not when the tree was built is missed, and counted in CoppiceRefitState::appeared_count. Needs no
+  // scratch. Throws ArgumentError as cmd_build, and without `refits`.
+  void cmd_refit(VkCommandBuffer commands, const TriangleInput& input, const MemoryRange& tree,
+                 const MemoryRange& update, KernelQueries* queries = nullptr) const;
+
+  // The sums of CoppiceRefitState by which the SAH cost of the tree is known, the same bits on every device:
+  // behind a build with `update`, or a refit (which clears them). `maximum` is the count's of the build.
+  void cmd_tree_cost(VkCommandBuffer commands, std::uint32_t maximum, const MemoryRange& tree,
+                     const MemoryRange& update, KernelQueries* queries = nullptr) const;
 
   // Of a tree that has been, or will be, built into this memory. Throws ArgumentError as cmd_build.
   TreeAddresses triangle_tree(const MemoryRange& tree) const;

@@ -91,6 +91,20 @@ typedef struct CoppiceTreeState {
   uint32_t reserved[2];
 } CoppiceTreeState;
 
+/* What a refit says, at TreeAddresses::refit_state. */
+typedef struct CoppiceRefitState {
+  /* Triangles that are finite now, and were not when the tree was built: they are in no leaf, so no ray finds
+     them. Above 0 the tree is to be built anew. */
+  uint32_t appeared_count;
+  uint32_t reserved;
+  /* After cmd_tree_cost: the SAH cost is area_sum / root_area, with costs of 1. */
+  float area_sum, root_area;
+} CoppiceRefitState;
+
+/* box_min of a node of a refitted tree that has no finite triangle, on all axes; box_max is its negative. No
+   ray hits it, and it is no part of another box. */
+#define COPPICE_NOTHING_BOX 3.402823466e38f
+
 #define COPPICE_BATCH_MAX_PRIMITIVES 512
 
 /* The primitives of one tree of a batch. */
@@ -115,5 +129,6 @@ typedef struct CoppiceBatchTree {
 #define COPPICE_ERROR_BATCH_RANGE 256u /* a range of a batch is too large or beyond the primitives */
 #define COPPICE_ERROR_COUNT 128u       /* a count on the device is larger than its maximum */
 #define COPPICE_ERROR_RAY_COUNT 512u   /* the same of rays: set in the state of their tree */
+#define COPPICE_ERROR_REFIT_TOO_DEEP 1024u
 
 #endif
