@@ -1,4 +1,4 @@
-// In:  a BVH2 and rays. Out: the closest hit of each. The height of the tree is checked against the stack.
+// In:  a BVH2 and rays. Out: the closest hit of each, and the pairs it visited. The height of the tree is checked against the stack.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/trace.h"
@@ -17,6 +17,7 @@ layout(constant_id = 2) const uint TRACE_STACK = TRACE_STACK_LIMIT;  // entries
 layout(constant_id = 3) const uint TRACE_TRIANGLE_TEST = TRIANGLE_FAST;
 layout(constant_id = 4) const uint TRACE_BOX_TEST = BOX_FAST;
 layout(constant_id = 5) const bool TRACE_MASKED = true;  // false: every ray sees every primitive
+layout(constant_id = 6) const bool TRACE_COUNTS_RAYS = false;  // the steps of each are kept
 
 #include "lib/walk_pairs.glsl"
 
@@ -49,6 +50,7 @@ void main() {
     }
     has_hit = so_far.triangle != NO_TRIANGLE;
   }
+  if (TRACE_COUNTS_RAYS && present) args.ray_steps.at[i] = steps;
   COUNT_INTO(args.counters.at[0].rays, present ? 1u : 0u)
   COUNT_INTO(args.counters.at[0].hits, has_hit ? 1u : 0u)
   COUNT_INTO(args.counters.at[0].steps, steps)

@@ -17,6 +17,7 @@ layout(local_size_x_id = DEVICE_SUBGROUP_SIZE_ID) in;
 layout(push_constant, scalar) uniform Push { TraceWideArgs args; };
 layout(constant_id = 0) const uint TRACE_MAX_TURNS = 0xffffffffu;  // as in trace_closest
 layout(constant_id = 1) const bool TRACE_MASKED = true;            // as in trace_closest
+layout(constant_id = 2) const bool TRACE_COUNTS_RAYS = false;      // each has the steps of its packet
 
 const uint TRACE_TRIANGLE_TEST = TRIANGLE_WATERTIGHT;
 const uint TRACE_BOX_TEST = BOX_ROBUST;
@@ -216,6 +217,10 @@ void main() {
     visited = trace(bundle);
   }
   uvec2 counts = keep_hits();
+  if (TRACE_COUNTS_RAYS) {
+    [[unroll]] for (uint r = 0u; r < RAYS; ++r)
+      if (ray_index(r) < ray_count) args.ray_steps.at[ray_index(r)] = visited;
+  }
   COUNT_INTO(args.counters.at[0].rays, counts.x)
   COUNT_INTO(args.counters.at[0].hits, counts.y)
   COUNT_INTO(args.counters.at[0].steps, counts.x * visited)

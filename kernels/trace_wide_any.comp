@@ -7,6 +7,7 @@ layout(local_size_x_id = DEVICE_SUBGROUP_SIZE_ID) in;
 layout(push_constant, scalar) uniform Push { TraceWideAnyArgs args; };
 layout(constant_id = 0) const uint TRACE_MAX_TURNS = 0xffffffffu;  // as in trace_closest
 layout(constant_id = 1) const bool TRACE_MASKED = true;            // as in trace_closest
+const bool TRACE_COUNTS_RAYS = false;
 
 #define SEARCH Search(true, TRACE_MASKED)
 #include "lib/wide_block.glsl"
@@ -23,5 +24,7 @@ bool keep_miss(uint ray, Hit so_far) {
   args.any_hits.at[ray] = 0u;
   return false;
 }
+
+void keep_steps(uint ray, uint steps) {}
 
 void main() { trace_block(); }

@@ -16,6 +16,7 @@
 #include "pipeline/wide_plan.h"
 #include "render/frame.h"
 #include "render/moving_vertices.h"
+#include "render/show.h"
 #include "scene/hard_cases.h"
 #include "stages/lockstep_executor.h"
 #include "stages/stages.h"
@@ -33,13 +34,15 @@ struct Frame {
   DeviceBuilder builder;
   bool lookback;
   Walk walk;
+  uint show = SHOW_COLOR;
 };
 constexpr Frame frames[] = {
     {1000, DeviceBuilder::ploc, true, Walk::binary},
     {1000, DeviceBuilder::hploc, true, Walk::wide_packets},
     {1000, DeviceBuilder::hploc, true, Walk::wide_single},
     {300, DeviceBuilder::ploc, true, Walk::brute_force},
-    {SORT_SCAN_TILE + 100, DeviceBuilder::ploc, false, Walk::binary}};  // one tile alone sorts without a scan
+    {SORT_SCAN_TILE + 100, DeviceBuilder::ploc, false, Walk::binary},  // one tile alone sorts without a scan
+    {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_DEPTH}};
 constexpr std::size_t scan_and_copy = std::size(frames), inputs = scan_and_copy + 1, vertices = inputs + 1,
                       refits = vertices + 1, chain_count = refits + 1;
 
@@ -63,6 +66,7 @@ Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
   BuildPlan build = plan_build(layout, static_cast<std::uint32_t>(arrays.triangles.size()), options);
   TraceOptions trace_options = test_trace_options(width, height);
   trace_options.walk = frame.walk;
+  trace_options.show = frame.show;
   std::optional<WidePlan> wide;
   if (is_wide(frame.walk)) wide = plan_wide(layout, build, &build);
   const TracePlan trace =
@@ -79,6 +83,7 @@ Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
   const AnyHitSlots any{trace.rays, layout.add<uint>("any_hits", trace.band_rays), trace.counters, {}};
   LockstepExecutor executor(device, layout);
   upload_frame(executor, build, trace, arrays, make_film(scene, {}, width, height, 1));
+  upload_show(executor, trace.show, Show::depth, {0, 100});
   auto difference = executor.run([&](Chain& chain) {
     append_build(chain, build);
     if (wide) append_wide(chain, build, *wide);

@@ -69,6 +69,8 @@ TEST(SharedLayout, ElementsOfEverySlot) {
   EXPECT_SAME_LAYOUT(SurfaceMaterial);
   EXPECT_SAME_LAYOUT(Lighting);
   EXPECT_SAME_LAYOUT(TraceCounters);
+  EXPECT_SAME_LAYOUT(ShowScale);
+  EXPECT_SAME_LAYOUT(ShowRange);
   EXPECT_SAME_LAYOUT(WideNode);
   EXPECT_SAME_LAYOUT(WideEntry);
   EXPECT_SAME_LAYOUT(WideLevel);
@@ -79,7 +81,7 @@ TEST(SharedLayout, ElementsOfEverySlot) {
   EXPECT_SAME_LAYOUT(VertexJoints);
   EXPECT_SAME_LAYOUT(RefitLevel);
   EXPECT_SAME_LAYOUT(RefitState);
-  EXPECT_EQ(seen.size(), 24u);
+  EXPECT_EQ(seen.size(), 26u);
 }
 
 }  // namespace

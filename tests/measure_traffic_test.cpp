@@ -93,6 +93,34 @@ TEST(Traffic, OfWideNodes) {
   EXPECT_EQ(bytes["wide_quantise"], 9 * (148u + 32) + 72 * 32);
 }
 
+// Of 2,000 rays 500 hit something; each step of a ray is kept.
+TEST(Traffic, OfWhatIsShown) {
+  const auto bytes_of_view = [](uint view, const char* stage) {
+    Layout layout;
+    const TreeSlots tree = plan_tree(layout, 100, 199);
+    TraceOptions options{.width = 40, .height = 50, .show = view};
+    const TracePlan plan = plan_trace(layout, tree, 1, options);
+    Chain chain(no_addresses);
+    append_trace(chain, tree, plan);
+    TraceCounters counters{};
+    counters.rays.x = 2000;
+    counters.hits.x = 500;
+    counters.steps.x = 30000;
+    for (const Step& step : chain.steps()) {
+      if (stage_of(step) && std::string_view(stage_of(step)->name) == stage)
+        return modelled_bytes(step, counts_of_trace(counters));
+    }
+    return std::uint64_t{0};
+  };
+  EXPECT_EQ(bytes_of_view(SHOW_IDS, "show"), 2000u * (4 + 12));
+  EXPECT_EQ(bytes_of_view(SHOW_STEPS, "show"), 2000u * (4 + 12));
+  EXPECT_EQ(bytes_of_view(SHOW_DEPTH, "show"), 2000u * (4 + 12) + 500 * 4);
+  EXPECT_EQ(bytes_of_view(SHOW_NORMALS, "show"), 2000u * (4 + 12) + 500 * 36);
+  EXPECT_EQ(bytes_of_view(SHOW_IDS, "shade"), 0u);
+  EXPECT_EQ(bytes_of_view(SHOW_IDS, "trace_closest"), 2000u * 64 + 64 * 30000 + 500 * 36);
+  EXPECT_EQ(bytes_of_view(SHOW_STEPS, "trace_closest"), 2000u * 68 + 64 * 30000 + 500 * 36);
+}
+
 TEST(Traffic, OfATraceOfTwoSamples) {
   Layout layout;
   const TreeSlots tree = plan_tree(layout, 100, 199);

@@ -30,6 +30,7 @@ class RenderCommand : public Command {
     app.add_option("--tracer", tracer_)->check(CLI::IsMember({"gpu", "cpu"}))->capture_default_str();
     app.add_flag("--kernels", kernels_, "print the time of every kernel; takes the frame once more");
     add_picture(app, picture_, scene_.up);
+    add_show(app, show_);
     add_intersection(app, picture_.trace);
     add_tree(app, device_.choices.walk);
     add_runs(app, runs_, "build and trace so many times; times are medians");
@@ -41,6 +42,7 @@ class RenderCommand : public Command {
   void check(const CLI::App& app) override {
     parse_view(picture_);
     const bool builds = builder_.on_device(), traces = traces_on_device(), either = builds || traces;
+    check_show(app);
     check_options_matter(app, {{"--trace-events", either, NEEDS_DEVICE},
                                {"--validate", either, NEEDS_DEVICE},
                                {"--variants", either, NEEDS_DEVICE},
@@ -49,6 +51,22 @@ class RenderCommand : public Command {
                                {"--tree", traces, NEEDS_DEVICE_TRACER},
                                {"--triangle-test", traces, NEEDS_DEVICE_TRACER},
                                {"--box-test", traces, NEEDS_DEVICE_TRACER}});
+  }
+
+  // A view needs what it shows.
+  void check_show(const CLI::App& app) const {
+    const Show show = show_.show;
+    const auto need = [&](bool has, const char* what) {
+      if (!has) throw CLI::ValidationError("--show " + std::string(name_of(show)) + " needs " + what);
+    };
+    need(show != Show::steps || traces_on_device(), "--tracer gpu, which counts the steps of each ray");
+    need(show != Show::steps || builder_.name != "none", "a builder: without a tree no nodes are visited");
+    need(show != Show::boxes || builder_.name != "none", "a builder: without a tree there are no boxes");
+    need(show != Show::clusters || (builder_.name == "gpu-ploc" && traces_on_device()),
+         "--builder gpu-ploc and --tracer gpu");
+    check_options_matter(app, {{"--most-steps", show == Show::steps, "--show steps"},
+                               {"--round", show == Show::clusters, "--show clusters"},
+                               {"--level", show == Show::boxes, "--show boxes"}});
   }
 
   std::vector<std::string> scenes() const override { return {scene_.spec}; }
@@ -62,7 +80,7 @@ class RenderCommand : public Command {
     around.load_ms = ms_since(load_start);
 
     if (builder_.name == "none") picture_.trace.walk = Walk::brute_force;
-    FrameRuns frame{builder_, picture_.trace, picture_.camera, runs_, false, files.trace_events};
+    FrameRuns frame{builder_, picture_.trace, picture_.camera, runs_, false, files.trace_events, show_};
     frame.split = kernels_ || !files.json.empty() || !files.trace_events.empty();
     std::optional<CheckedDevice> device;
     const auto device_start = Clock::now();
@@ -74,7 +92,7 @@ class RenderCommand : public Command {
     const auto write_start = Clock::now();
     write_png(files.picture, frame.trace.width, frame.trace.height, report.image);
     around.write_ms = ms_since(write_start);
-    if (files.talks()) print(text_of(report, frame, around));
+    if (files.talks()) print(text_of(report, scene, frame, around));
     write_json(files.json, to_json(report, scene, frame, around));
     throw_if_interrupted();
     return device ? validation_status(*device) : 0;
@@ -103,6 +121,7 @@ class RenderCommand : public Command {
   std::uint32_t runs_ = 1;
   SceneOptions scene_;
   PictureOptions picture_;
+  ShowOptions show_;
   BuilderChoice builder_;
   DeviceSetup device_;
 };

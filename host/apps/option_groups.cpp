@@ -210,6 +210,26 @@ void add_picture(CLI::App& app, PictureOptions& picture, std::string& up) {
       ->capture_default_str();
 }
 
+void add_show(CLI::App& app, ShowOptions& show) {
+  const auto set = [&show](const std::string& given) {
+    show.show = static_cast<Show>(std::ranges::find(SHOW_NAMES, given) - SHOW_NAMES);
+  };
+  app.add_option_function<std::string>("--show", set,
+                                       "the scene, or of each pixel: nodes visited, normal, depth, triangle, "
+                                       "place in Morton order, cluster of PLOC; or boxes of the tree")
+      ->check(CLI::IsMember(std::vector<std::string>(std::begin(SHOW_NAMES), std::end(SHOW_NAMES))))
+      ->default_str("color");
+  app.add_option("--most-steps", show.most_steps,
+                 "of --show steps: at the red end; default 128, through a wide tree 64")
+      ->check(CLI::Range(1u, 1u << 20));
+  app.add_option("--round", show.round, "of --show clusters: after so many rounds of PLOC")
+      ->check(CLI::Range(0u, 1u << 20))
+      ->capture_default_str();
+  app.add_option("--level", show.level, "of --show boxes: those down to this level of the tree")
+      ->check(CLI::Range(0u, TRACE_STACK_LIMIT))
+      ->capture_default_str();
+}
+
 void add_scene_and_build(CLI::App& app, SceneOptions& scene, BuilderChoice& builder, DeviceSetup& device,
                          const std::vector<std::string>& names) {
   add_scene(app, scene);

@@ -8,6 +8,7 @@
 #include "measure/builder_choice.h"
 #include "pipeline/checked_device.h"
 #include "pipeline/trace_plan.h"
+#include "render/show.h"
 #include "scene/scene_source.h"
 
 namespace coppice {
@@ -41,6 +42,7 @@ void add_intersection(CLI::App& app, TraceOptions& trace);
 void add_size(CLI::App& app, PictureOptions& picture);
 void add_view(CLI::App& app, PictureOptions& picture, std::string& up);     // size and camera
 void add_picture(CLI::App& app, PictureOptions& picture, std::string& up);  // view and samples
+void add_show(CLI::App& app, ShowOptions& show);
 void add_named_device(CLI::App& app, DeviceOptions& device);
 void add_device(CLI::App& app, DeviceOptions& device);  // and whether to validate
 void add_trace_events(CLI::App& app, std::string& file);

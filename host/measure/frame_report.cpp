@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/tree_hash.h"
+#include "measure/show_frame.h"
 #include "measure/table.h"
 #include "render/film.h"
 
@@ -55,6 +56,8 @@ Json to_json(const FrameReport& report, const Scene& scene, const FrameRuns& fra
                {"effects", effects_of(scene)},
                {"kernels", to_json(report.kernels)}};
   sums_to_json(report.kernels, json);
+  json["show"] = name_of(report.shown.options.show);
+  json["shown"] = to_json(report.shown, scene);
   json["image_hash"] = hex16(image_hash(report.image));
   json["hits"] = report.hits;
   json["steps_per_ray"] =
@@ -62,7 +65,8 @@ Json to_json(const FrameReport& report, const Scene& scene, const FrameRuns& fra
   return json;
 }
 
-std::string text_of(const FrameReport& report, const FrameRuns& frame, const FrameSurroundings& around) {
+std::string text_of(const FrameReport& report, const Scene& scene, const FrameRuns& frame,
+                    const FrameSurroundings& around) {
   const BuildReport& build = report.build;
   std::string text =
       format("%s: %llu triangles", build.scene.c_str(), static_cast<unsigned long long>(build.triangles));
@@ -77,6 +81,7 @@ std::string text_of(const FrameReport& report, const FrameRuns& frame, const Fra
   text += format("  trace    %9.1f ms  %ux%u, %u spp, %.2f Mrays/s on the %s\n", report.trace_ms,
                  frame.trace.width, frame.trace.height, frame.trace.samples, mrays_per_s(report),
                  around.tracer.c_str());
+  text += text_of(report.shown, scene);
   text += format("  write    %9.1f ms\n", around.write_ms);
   if (!report.kernels.rows.empty() && !build.kernels.rows.empty()) text += text_of(build.kernels);
   if (!report.kernels.rows.empty()) text += text_of(report.kernels);

@@ -17,6 +17,7 @@ struct FrameSurroundings {
 
 Json to_json(const FrameReport& report, const Scene& scene, const FrameRuns& frame,
              const FrameSurroundings& around);
-std::string text_of(const FrameReport& report, const FrameRuns& frame, const FrameSurroundings& around);
+std::string text_of(const FrameReport& report, const Scene& scene, const FrameRuns& frame,
+                    const FrameSurroundings& around);
 
 }  // namespace coppice

@@ -4,9 +4,11 @@
 
 #include "measure/measure_build.h"
 #include "measure/progress.h"
+#include "measure/show_frame.h"
 #include "measure/trace_events.h"
 #include "pipeline/bounded_submits.h"
 #include "pipeline/trace_pieces.h"
+#include "render/box_lines.h"
 #include "render/frame.h"
 
 namespace coppice {
@@ -129,6 +131,32 @@ void split_kernels(CheckedDevice& device, GpuExecutor& executor, const TreeSteps
   events.write(trace_events, device);
 }
 
+// What is shown of the tree that the warm-up has built.
+void upload_shown(GpuExecutor& executor, const FramePlan& plan, const SceneArrays& arrays,
+                  FrameReport& report) {
+  const ShowSlots& slots = plan.trace.show;
+  upload_show(executor, slots, report.shown.options.show, report.shown.scale);
+  if (slots.primitive_values.count == 0) return;
+  const std::vector<Node> nodes = read_tree(executor, plan.tree);
+  std::vector<PlocRound> rounds;
+  if (plan.build && plan.build->rounds.count > 0) rounds = executor.read(plan.build->rounds);
+  const std::vector<uint> values =
+      shown_values(report.shown.options, arrays.triangles, report.build.morton_bits, {nodes, rounds});
+  report.shown.clusters = count_groups(values, nodes);
+  executor.upload(slots.primitive_values, std::span<const uint>(values));
+}
+
+// The picture, and what was seen in it.
+void read_picture(const GpuExecutor& executor, const FramePlan& plan, const Film& film, FrameReport& report) {
+  report.image = executor.read(plan.trace.image);
+  const ShowOptions& show = report.shown.options;
+  if (plan.trace.show.range.count > 0)
+    report.shown.seen = seen_in(executor.read(plan.trace.show.range)[0], show.show);
+  if (show.show != Show::boxes) return;
+  const std::vector<BoxLine> lines = box_lines(read_tree(executor, plan.tree), film, show.level, BOXES_SHOWN);
+  draw_box_lines(report.image, film.width, film.height, lines, show.level);
+}
+
 }  // namespace
 
 FrameReport measure_frame(CheckedDevice& device, const Scene& scene, const FrameRuns& frame) {
@@ -138,6 +166,7 @@ FrameReport measure_frame(CheckedDevice& device, const Scene& scene, const Frame
   report.build = report_for(frame.builder, scene, arrays.triangles, device.notes());
   FrameOptions options{.trace = frame.trace};
   options.trace.directional_light = scene.light.radiance != vec3(0);
+  options.trace.show = kernel_view(frame.show.show);
   Bvh bvh;
   if (frame.builder.on_device()) {
     options.build = device.build_options(frame.builder.build_options(report.build.morton_bits));
@@ -150,20 +179,25 @@ FrameReport measure_frame(CheckedDevice& device, const Scene& scene, const Frame
   Layout layout(device.properties().max_block_bytes);
   const FramePlan plan = plan_frame(layout, arrays, options);
   GpuExecutor executor(device.device(), layout);
-  upload_frame(executor, plan.tree, plan.trace, arrays,
-               make_film(scene, frame.camera, frame.trace.width, frame.trace.height, frame.trace.samples));
+  const Film film =
+      make_film(scene, frame.camera, frame.trace.width, frame.trace.height, frame.trace.samples);
+  upload_frame(executor, plan.tree, plan.trace, arrays, film);
+  report.shown.options = frame.show;
+  report.shown.scale =
+      span_of(frame.show, film, box_of(arrays.triangles), options.trace.walk, arrays.triangle_count());
   if (!plan.build) upload_bvh(executor, plan.tree, bvh);
 
   const InterruptionGuard guard;
   const TreeSteps steps = tree_steps(executor, plan);
   Pace pace = warm_up(executor, steps, plan, device.properties());
+  upload_shown(executor, plan, arrays, report);
   TraceProgress progress(TracePieces(plan.tree, plan.trace).work(), frame.runs + frame.split);
   measure_frames(executor, steps, plan, pace, frame.runs, progress, report);
   const RunCounts counts = counts_of_trace(executor.read(plan.trace.counters)[0]);
   report.rays = counts.rays;
   report.hits = counts.hits;
   report.steps = counts.steps;
-  report.image = executor.read(plan.trace.image);
+  read_picture(executor, plan, film, report);
   report.build.device_bytes = device_bytes(layout);
   if (plan.build) describe_device_build(device, executor, *plan.build, report.build);
   if (frame.split) split_kernels(device, executor, steps, plan, pace, progress, frame.trace_events, report);

@@ -7,6 +7,7 @@
 #include "measure/builder_choice.h"
 #include "pipeline/checked_device.h"
 #include "pipeline/trace_plan.h"
+#include "render/show.h"
 #include "scene/scene.h"
 
 namespace coppice {
@@ -19,6 +20,14 @@ struct FrameRuns {
   std::uint32_t runs = 1;        // the whole frame so many times
   bool split = false;            // once more, for the times of kernels and the file of trace events
   std::string trace_events{};    // a file; empty: none
+  ShowOptions show{};            // clusters only of gpu-ploc
+};
+
+// What a picture shows in place of colours, and between which values.
+struct ShownReport {
+  ShowOptions options{};
+  ShowSpan scale{}, seen{};
+  std::uint64_t clusters = 0;
 };
 
 struct FrameReport {
@@ -30,6 +39,7 @@ struct FrameReport {
   bool walks_wide = false;
   KernelTable kernels;      // of the trace, on a device
   std::vector<uint> image;  // RGBA8
+  ShownReport shown;
 };
 
 // Builds in one submit and traces in as many as keep each short, with nothing but times read back in between;

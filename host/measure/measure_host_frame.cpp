@@ -6,9 +6,11 @@
 #include "measure/measure_build.h"
 #include "measure/measure_frame.h"
 #include "measure/progress.h"
+#include "measure/show_frame.h"
 #include "pipeline/interruption.h"
 #include "pipeline/pace.h"
 #include "pipeline/trace_pieces.h"
+#include "render/box_lines.h"
 #include "render/frame.h"
 #include "stages/cpu_executor.h"
 #include "stages/stages.h"
@@ -74,13 +76,28 @@ FrameReport measure_host_frame(CheckedDevice* device, const Scene& scene, const 
 
   Layout layout(~std::uint64_t{0});
   FrameOptions options{.trace = frame.trace};
+  options.trace.show = kernel_view(frame.show.show);
   options.trace.walk = Walk::binary;  // in its place traces the CPU tracer, which has the tree
   const FramePlan plan = plan_frame(layout, arrays, options);
   CpuExecutor executor(layout);
-  upload_frame(executor, plan.tree, plan.trace, arrays,
-               make_film(scene, frame.camera, frame.trace.width, frame.trace.height, frame.trace.samples));
+  const Film film =
+      make_film(scene, frame.camera, frame.trace.width, frame.trace.height, frame.trace.samples);
+  upload_frame(executor, plan.tree, plan.trace, arrays, film);
+  report.shown.options = frame.show;
+  report.shown.scale =
+      span_of(frame.show, film, box_of(arrays.triangles), options.trace.walk, arrays.triangle_count());
+  upload_show(executor, plan.trace.show, frame.show.show, report.shown.scale);
+  if (plan.trace.show.primitive_values.count > 0)
+    executor.upload(plan.trace.show.primitive_values,
+                    std::span<const uint>(shown_values(frame.show, arrays.triangles, report.build.morton_bits,
+                                                       {bvh.nodes, {}})));
   trace_on_host(executor, plan.tree, plan.trace, bvh, arrays.triangles, report);
   report.image = executor.read(plan.trace.image);
+  if (plan.trace.show.range.count > 0)
+    report.shown.seen = seen_in(executor.read(plan.trace.show.range)[0], frame.show.show);
+  if (frame.show.show == Show::boxes)
+    draw_box_lines(report.image, film.width, film.height,
+                   box_lines(bvh.nodes, film, frame.show.level, BOXES_SHOWN), frame.show.level);
   return report;
 }
 

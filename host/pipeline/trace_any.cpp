@@ -35,7 +35,7 @@ void append_any_hits(Chain& chain, const TreeSlots& tree, const AnyHitSlots& slo
     chain.run(stages::trace_wide_any,
               {chain.at(tree.wide_nodes), chain.at(tree.wide_counts), nodes, triangles, rays, any_hits,
                counters, state, flags, masks, count_at, ray_count, filter.ray_mask},
-              counted_groups(ray_count, TRACE_BLOCK, count_at), {options.max_turns, filter.masks()});
+              counted_groups(ray_count, TRACE_BLOCK, count_at), {options.max_turns, filter.masks(), 0});
     return;
   }
   chain.run(stages::trace_any,
@@ -43,7 +43,7 @@ void append_any_hits(Chain& chain, const TreeSlots& tree, const AnyHitSlots& slo
              filter.ray_mask, options.stack_entries, options.triangle_test, options.box_test, 0},
             counted_groups(ray_count, TRACE_GROUP, count_at),
             {options.max_turns, options.visits_per_turn, options.stack_entries, options.triangle_test,
-             options.box_test, filter.masks()});
+             options.box_test, filter.masks(), 0});
 }
 
 CandidateSlots plan_candidates(Layout& layout, std::uint32_t ray_count, std::uint32_t capacity) {

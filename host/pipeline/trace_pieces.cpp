@@ -77,13 +77,30 @@ void TracePieces::open_range(Chain& chain, std::uint64_t work) {
             groups_of(range_.count, CAMERA_RAYS_GROUP));
 }
 
-void TracePieces::close_range(Chain& chain) {
-  const auto radiance = chain.at(plan_.radiance, range_.first);
+void TracePieces::append_shade(Chain& chain, Vec3Buffer radiance) const {
   chain.run(stages::shade,
             {chain.at(tree_.triangles), chain.at(plan_.material_index), chain.at(plan_.materials),
              chain.at(plan_.lighting), chain.at(plan_.rays, range_.first), chain.at(plan_.hits, range_.first),
              radiance, range_.count, sample_},
             groups_of(range_.count, SHADE_GROUP), {plan_.options.directional_light});
+}
+
+void TracePieces::append_show(Chain& chain, Vec3Buffer radiance) const {
+  const ShowSlots& show = plan_.show;
+  chain.run(stages::show,
+            {chain.at(tree_.triangles), chain.at(plan_.hits, range_.first),
+             address_or_null(chain, plan_.ray_steps, range_.first),
+             address_or_null(chain, show.primitive_values), chain.at(show.colour_map), chain.at(show.scale),
+             chain.at(show.range), radiance, range_.count, sample_, plan_.options.show, 0},
+            groups_of(range_.count, SHOW_GROUP), {plan_.options.show});
+}
+
+void TracePieces::close_range(Chain& chain) {
+  const auto radiance = chain.at(plan_.radiance, range_.first);
+  if (plan_.options.show != SHOW_COLOR)
+    append_show(chain, radiance);
+  else
+    append_shade(chain, radiance);
   if (sample_ + 1 == plan_.options.samples) {
     chain.run(stages::resolve,
               {chain.at(plan_.film), radiance, chain.at(plan_.srgb_thresholds), chain.at(plan_.image),
@@ -100,6 +117,7 @@ void TracePieces::close_range(Chain& chain) {
 
 std::uint64_t TracePieces::append(Chain& chain, std::uint64_t work) {
   if (!cleared_) chain.clear(plan_.counters);
+  if (!cleared_) chain.clear(plan_.show.range);
   cleared_ = true;
   std::uint64_t appended = 0;
   while (!done() && has_room(tree_, plan_.options, appended, work)) {

@@ -61,7 +61,7 @@ class AnyHitPieces {
   std::uint32_t ray_count_;
 };
 
-// A picture: camera rays, closest hits, shading, sRGB.
+// A picture: camera rays, closest hits, shading or what is shown in its place, sRGB.
 class TracePieces {
  public:
   // `first_pixel`: those before it, in the order of FILM_STRIP, are left out; a multiple of RANGE_RAYS.
@@ -80,6 +80,8 @@ class TracePieces {
   std::uint32_t band_rays() const;
   void open_range(Chain& chain, std::uint64_t work);
   void close_range(Chain& chain);
+  void append_shade(Chain& chain, Vec3Buffer radiance) const;
+  void append_show(Chain& chain, Vec3Buffer radiance) const;
 
   TreeSlots tree_;
   TracePlan plan_;

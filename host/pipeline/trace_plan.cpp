@@ -27,14 +27,16 @@ void append_walk(Chain& chain, const TreeSlots& tree, const RaySlots& slots, con
   const auto flags = address_or_null(chain, filter.primitive_flags);
   const auto masks = address_or_null(chain, filter.ray_masks, range.first);
   const auto count_at = address_or_null(chain, filter.count_at);
+  const auto ray_steps = address_or_null(chain, slots.ray_steps, range.first);
+  const bool counts_rays = slots.ray_steps.count != 0;
   if (!is_wide(options.walk)) {
-    chain.run(
-        stages::trace_closest,
-        {chain.at(tree.nodes), triangles, rays, hits, counters, chain.at(tree.state), flags, masks, count_at,
-         range.count, filter.ray_mask, options.stack_entries, options.triangle_test, options.box_test, 0},
-        counted_groups(range.count, TRACE_GROUP, count_at),
-        {options.max_turns, options.visits_per_turn, options.stack_entries, options.triangle_test,
-         options.box_test, filter.masks()});
+    chain.run(stages::trace_closest,
+              {chain.at(tree.nodes), triangles, rays, hits, counters, chain.at(tree.state), flags, masks,
+               count_at, ray_steps, range.count, filter.ray_mask, options.stack_entries,
+               options.triangle_test, options.box_test, 0},
+              counted_groups(range.count, TRACE_GROUP, count_at),
+              {options.max_turns, options.visits_per_turn, options.stack_entries, options.triangle_test,
+               options.box_test, filter.masks(), counts_rays});
     return;
   }
   if (!can_trace_wide(options))
@@ -50,14 +52,15 @@ void append_walk(Chain& chain, const TreeSlots& tree, const RaySlots& slots, con
                            flags,
                            masks,
                            count_at,
+                           ray_steps,
                            range.count,
                            filter.ray_mask};
   if (options.walk == Walk::wide_packets) {
     chain.run(stages::trace_wide, args, counted_groups(range.count, TRACE_PACKET, count_at),
-              {options.max_turns, filter.masks()});
+              {options.max_turns, filter.masks(), counts_rays});
   } else {
     chain.run(stages::trace_wide_single, args, counted_groups(range.count, TRACE_BLOCK, count_at),
-              {options.max_turns, filter.masks()});
+              {options.max_turns, filter.masks(), counts_rays});
   }
 }
 
@@ -72,6 +75,16 @@ std::uint64_t append_slice(Chain& chain, const TreeSlots& tree, const RaySlots& 
        chain.at(slots.counters), range.count, range.next_triangle, count, last, options.triangle_test, 0},
       groups_of(range.count, TRACE_GROUP), {options.triangle_test});
   return std::uint64_t{range.count} * std::max(count, 1u);
+}
+
+ShowSlots plan_show(Layout& layout, const TreeSlots& tree, uint view) {
+  ShowSlots slots;
+  slots.colour_map = layout.add<vec3>("colour_map", SHOW_MAP_COLOURS);
+  slots.scale = layout.add<ShowScale>("show_scale", 1);
+  slots.range = layout.add<ShowRange>("show_range", 1);
+  if (view == SHOW_RANKS || view == SHOW_GROUPS)
+    slots.primitive_values = layout.add<uint>("primitive_values", tree.triangle_count);
+  return slots;
 }
 
 }  // namespace
@@ -143,6 +156,8 @@ std::array<uint, 256> srgb_thresholds() {
 
 TracePlan plan_trace(Layout& layout, const TreeSlots& tree, std::uint32_t material_count,
                      const TraceOptions& options) {
+  if (options.show == SHOW_STEPS && options.walk == Walk::brute_force)
+    throw std::invalid_argument("brute force visits no nodes");
   TracePlan plan;
   plan.options = options;
   const std::uint32_t pixels = options.width * options.height;
@@ -157,6 +172,8 @@ TracePlan plan_trace(Layout& layout, const TreeSlots& tree, std::uint32_t materi
   plan.rays = layout.add<Ray>("rays", plan.band_rays);
   plan.hits = layout.add<Hit>("hits", plan.band_rays);
   plan.radiance = layout.add<vec3>("radiance", plan.band_rays);
+  if (options.show != SHOW_COLOR) plan.show = plan_show(layout, tree, options.show);
+  if (options.show == SHOW_STEPS) plan.ray_steps = layout.add<uint>("ray_steps", plan.band_rays);
   return plan;
 }
 

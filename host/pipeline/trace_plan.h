@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "interface/trace.h"
+#include "interface/show.h"
 #include "pipeline/build_plan.h"
 #include "pipeline/ray_filter.h"
 #include "pipeline/walk.h"
@@ -22,7 +22,8 @@ struct TraceOptions {
   std::uint32_t stack_entries = TRACE_STACK_LIMIT;
   std::uint32_t triangle_test = TRIANGLE_WATERTIGHT;
   std::uint32_t box_test = BOX_ROBUST;
-  bool directional_light = true;  // what the scene calls for
+  bool directional_light = true;    // what the scene calls for
+  std::uint32_t show = SHOW_COLOR;  // SHOW_; brute force has no steps
 };
 
 // Whether the wide tree can be walked: its tracers have the watertight and the robust test only, so that the
@@ -35,6 +36,7 @@ struct RaySlots {
   Slot<Hit> hits;
   Slot<TraceCounters> counters;
   RayFilter filter{};
+  Slot<uint> ray_steps{};  // out: of each, where there is a slot; not by brute force
 };
 
 // What the counters of a trace say.
@@ -42,6 +44,14 @@ struct TraceCounts {
   std::uint64_t rays = 0, hits = 0, steps = 0;
 };
 TraceCounts counts_of(const TraceCounters& counters);
+
+// What is shown in place of colours: empty slots where nothing is.
+struct ShowSlots {
+  Slot<vec3> colour_map;        // in: SHOW_MAP_COLOURS of them
+  Slot<ShowScale> scale;        // in
+  Slot<uint> primitive_values;  // in: one a primitive, for SHOW_RANKS and SHOW_GROUPS
+  Slot<ShowRange> range;        // out
+};
 
 // Where a trace of a picture keeps what, beside the tree it walks.
 struct TracePlan : RaySlots {
@@ -56,9 +66,10 @@ struct TracePlan : RaySlots {
   Slot<uint> image;                 // out: RGBA8, red in the low byte, rows top to bottom
 
   Slot<vec3> radiance;  // one a ray, in the order of FILM_STRIP
+  ShowSlots show;
 };
 
-// Throws LayoutError if a slot does not fit a block.
+// Throws LayoutError if a slot does not fit a block, std::invalid_argument for the steps of brute force.
 TracePlan plan_trace(Layout& layout, const TreeSlots& tree, std::uint32_t material_count,
                      const TraceOptions& options);
 

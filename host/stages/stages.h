@@ -9,6 +9,7 @@
 #include "interface/ploc.h"
 #include "interface/refit.h"
 #include "interface/scan.h"
+#include "interface/show.h"
 #include "interface/sort.h"
 #include "interface/trace.h"
 #include "interface/vertex.h"
@@ -67,6 +68,7 @@
   STAGE(trace_brute_force, TraceBruteForceArgs, TraceBruteForceConstants, nearly_hits) \
   STAGE(bounce_rays, BounceRaysArgs, NoConstants, nearly_bounced)                      \
   STAGE(shade, ShadeArgs, ShadeConstants, nearly_radiance)                             \
+  STAGE(show, ShowArgs, ShowConstants, nearly_radiance)                                \
   STAGE(resolve, ResolveArgs, NoConstants, nearly_image)                               \
   STAGE(copy_words, CopyWordsArgs, NoConstants, exactly)                               \
   STAGE(scan_tile_sums, ScanTileSumsArgs, NoConstants, exactly)                        \

@@ -24,6 +24,12 @@ Bytes walk_bytes(const Args& args, Bytes per_ray, Bytes visited, const RunCounts
   return rays * per_ray + share(visited, rays, counts);
 }
 
+// Of a ray, where its steps are kept.
+template <class Args>
+Bytes kept_steps(const Args& args) {
+  return args.ray_steps.value ? sizeof(uint) : 0;
+}
+
 Bytes pairs_of(const RunCounts& counts) { return counts.steps * 2 * sizeof(Node); }
 Bytes wide_nodes_of(const RunCounts& counts) { return counts.steps * sizeof(WideNode); }
 Bytes triangles_of(const RunCounts& counts) { return counts.hits * sizeof(Triangle); }
@@ -39,16 +45,16 @@ Bytes trace_misses(const TraceMissesArgs& a, const RunCounts& counts) {
 }
 
 Bytes trace_closest(const TraceClosestArgs& a, const RunCounts& counts) {
-  return walk_bytes(a, ray_and_hit, pairs_of(counts) + triangles_of(counts), counts);
+  return walk_bytes(a, ray_and_hit + kept_steps(a), pairs_of(counts) + triangles_of(counts), counts);
 }
 
 Bytes trace_wide(const TraceWideArgs& a, const RunCounts& counts) {
-  return walk_bytes(a, ray_and_hit, counts.steps / TRACE_PACKET * sizeof(WideNode) + triangles_of(counts),
-                    counts);
+  return walk_bytes(a, ray_and_hit + kept_steps(a),
+                    counts.steps / TRACE_PACKET * sizeof(WideNode) + triangles_of(counts), counts);
 }
 
 Bytes trace_wide_single(const TraceWideArgs& a, const RunCounts& counts) {
-  return walk_bytes(a, ray_and_hit, wide_nodes_of(counts) + triangles_of(counts), counts);
+  return walk_bytes(a, ray_and_hit + kept_steps(a), wide_nodes_of(counts) + triangles_of(counts), counts);
 }
 
 Bytes trace_any(const TraceAnyArgs& a, const RunCounts& counts) {
@@ -77,6 +83,15 @@ Bytes shade(const ShadeArgs& a, const RunCounts& counts) {
   const Bytes radiance = sizeof(vec3) * (a.sample_index == 0 ? 1 : 2);
   return a.ray_count * (sizeof(Ray) + 4 + radiance) +
          share(counts.hits, a.ray_count, counts) * (4 + sizeof(SurfaceMaterial) + sizeof(Triangle));
+}
+
+// Of each ray its steps or its triangle, of each hit what is shown of it.
+Bytes show(const ShowArgs& a, const RunCounts& counts) {
+  const Bytes radiance = sizeof(vec3) * (a.sample_index == 0 ? 1 : 2);
+  Bytes of_hit = 0;
+  if (a.view == SHOW_NORMALS) of_hit = sizeof(Triangle);
+  if (a.view == SHOW_DEPTH || a.view == SHOW_RANKS || a.view == SHOW_GROUPS) of_hit = sizeof(uint);
+  return a.ray_count * (sizeof(uint) + radiance) + share(counts.hits, a.ray_count, counts) * of_hit;
 }
 
 Bytes resolve(const ResolveArgs& a, const RunCounts&) { return Bytes{a.ray_count} * (sizeof(vec3) + 4); }

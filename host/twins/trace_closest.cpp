@@ -62,13 +62,16 @@ void trace_closest(const TraceClosestArgs& args) {
   const uint ray_count = counted(args.count_at, args.ray_count);
   for (uint i = 0; i < ray_count; ++i) {
     TraceRay ray(args.rays[i]);
+    uint steps = 0;
     if (!empty && ray.is_sound) {
       const Node& root = args.nodes[0];
       ray.approach(root.box_min, root.box_max);
       Hit hit = ray.prepared(args.hits[i]);
-      count_into(counters.steps, trace(args, ray, Sight(args, i), hit));
+      steps = trace(args, ray, Sight(args, i), hit);
       ray.keep(hit, args.hits[i]);
     }
+    count_into(counters.steps, steps);
+    keep_ray_steps(args, i, steps);
     count_into(counters.rays, 1);
     count_into(counters.hits, args.hits[i].triangle != NO_TRIANGLE);
   }

@@ -10,4 +10,10 @@ inline void count_into(uvec2& counter, std::uint64_t value) {
   counter = {static_cast<uint>(sum), static_cast<uint>(sum >> 32)};
 }
 
+// Where the steps of each ray are kept.
+template <class Args>
+void keep_ray_steps(const Args& args, uint ray, uint steps) {
+  if (args.ray_steps.value != 0) args.ray_steps[ray] = steps;
+}
+
 }  // namespace coppice::twins

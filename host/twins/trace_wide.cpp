@@ -196,11 +196,13 @@ void trace_wide(const TraceWideArgs& args) {
   note_ray_count(args.state[0], args.count_at, args.ray_count);
   for (uint first = 0; first < ray_count; first += TRACE_PACKET) {
     const uint count = std::min(TRACE_PACKET, ray_count - first);
-    if (args.wide_counts[0].node_count != 0)
-      count_into(counters.steps, trace_packet(args, first, count) * count);
+    const uint steps = args.wide_counts[0].node_count != 0 ? trace_packet(args, first, count) : 0;
+    count_into(counters.steps, std::uint64_t{steps} * count);
     count_into(counters.rays, count);
-    for (uint i = first; i < first + count; ++i)
+    for (uint i = first; i < first + count; ++i) {
       count_into(counters.hits, args.hits[i].triangle != NO_TRIANGLE);
+      keep_ray_steps(args, i, steps);
+    }
   }
 }
 

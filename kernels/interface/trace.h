@@ -120,6 +120,7 @@ struct TraceClosestArgs {
   READS(UintBuffer) primitive_flags;  // one a primitive; null: PRIMITIVE_FLAGS_DEFAULT
   READS(UintBuffer) ray_masks;        // one a ray; may be null
   READS(UintBuffer) count_at;         // may be null
+  UintBuffer ray_steps;               // one a ray, where the constant counts_rays says so; else null
   uint ray_count;
   uint ray_mask;
   uint stack_entries;  // a tree of greater height is refused (ERROR_TREE_TOO_DEEP)
@@ -141,6 +142,7 @@ struct TraceWideArgs {
   READS(UintBuffer) primitive_flags;  // this and what follows as in TraceClosestArgs
   READS(UintBuffer) ray_masks;
   READS(UintBuffer) count_at;
+  UintBuffer ray_steps;
   uint ray_count;
   uint ray_mask;
 };
@@ -265,12 +267,14 @@ struct TraceClosestConstants {
   uint stack_entries;
   uint triangle_test;
   uint box_test;
-  uint masked;  // 0: without looking every ray sees every primitive
+  uint masked;       // 0: without looking every ray sees every primitive
+  uint counts_rays;  // 1: the steps of each ray are kept, too; not for any hits
 };
 
 struct TraceWideConstants {
   uint max_turns;
   uint masked;
+  uint counts_rays;
 };
 
 struct TraceCandidatesConstants {

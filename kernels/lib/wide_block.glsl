@@ -5,7 +5,7 @@
 // walks with two rays in turns, so that a node is on its way from memory while another one's children are tested. No
 // ray's walk depends on the others.
 //
-// Needs `args`, the constants TRACE_MAX_TURNS and TRACE_MASKED, and SEARCH, and after it the functions below.
+// Needs `args`, the constants TRACE_MAX_TURNS, TRACE_MASKED and TRACE_COUNTS_RAYS, and SEARCH, and after it the functions below.
 #include "count_error.glsl"
 #include "ray_words.glsl"
 #include "subgroup.glsl"
@@ -23,8 +23,11 @@ Hit hit_so_far(uint ray, Ray given);
 // Of a walk that has ended, or of a ray that hits nothing in this tree. Whether the ray has a hit.
 bool keep_hit(Walk w);
 bool keep_miss(uint ray, Hit so_far);
+// How many nodes it visited; only with TRACE_COUNTS_RAYS.
+void keep_steps(uint ray, uint steps);
 
 Walk walks[TRACE_RAYS];
+uint ray_visited[TRACE_RAYS];  // of the rays on their way; only with TRACE_COUNTS_RAYS
 uint visited = 0u;
 uint turns = 0u;
 
@@ -41,6 +44,7 @@ uint step_walks(WideTree tree) {
   [[unroll]] for (uint k = 0u; k < TRACE_RAYS; ++k) {
     if (is_at_node(walks[k])) {
       ++visited;
+      if (TRACE_COUNTS_RAYS) ++ray_visited[k];
       visit_node(SEARCH, walks[k], words[k], k);
     }
     walking += count_of(walks_on(walks[k]));
@@ -74,7 +78,10 @@ const uint NO_INDEX = 0xffffffffu;
 uint take_ray(inout Walk w, uint index, bool has_tree, Aabb scene) {
   Ray given = load_ray(args.rays, index);
   Hit so_far = hit_so_far(index, given);
-  if (!has_tree || !prepare_ray(given, w.ray)) return keep_miss(index, so_far) ? 1u : 0u;
+  if (!has_tree || !prepare_ray(given, w.ray)) {
+    if (TRACE_COUNTS_RAYS) keep_steps(index, 0u);
+    return keep_miss(index, so_far) ? 1u : 0u;
+  }
   w.sight = Sight(args.primitive_flags, args.ray_mask);
   if (TRACE_MASKED) w.sight.mask = mask_of(args.ray_masks, args.ray_mask, index);
   w.ray_index = index;
@@ -105,11 +112,13 @@ void trace_block() {
       bool idle = !has_ray(walks[k]);
       if (idle && walks[k].ray_index != NO_INDEX) {
         hit_count += keep_hit(walks[k]) ? 1u : 0u;
+        if (TRACE_COUNTS_RAYS) keep_steps(walks[k].ray_index, ray_visited[k]);
         walks[k].ray_index = NO_INDEX;
       }
       uvec4 idle_lanes = subgroupBallot(idle);
       uint index = taken + subgroupBallotExclusiveBitCount(idle_lanes);
       taken = min(taken + subgroupBallotBitCount(idle_lanes), end);
+      if (TRACE_COUNTS_RAYS && idle) ray_visited[k] = 0u;
       if (idle && index < end) hit_count += take_ray(walks[k], index, has_tree, Aabb(root.box_min, root.box_max));
       going = going || subgroupAny(has_ray(walks[k]));
     }
