@@ -126,8 +126,9 @@ TEST_F(ShowViews, StepsOfRaysAddUpToWhatIsCounted) {
     EXPECT_EQ(shown.seen.least, static_cast<float>(*least)) << name_of(walk);
     EXPECT_EQ(shown.seen.greatest, static_cast<float>(*greatest)) << name_of(walk);
     for (std::size_t ray = 0; ray < shown.steps.size(); ++ray) {
-      if (walk == Walk::wide_packets)
+      if (walk == Walk::wide_packets) {
         EXPECT_EQ(shown.steps[ray], shown.steps[ray / TRACE_PACKET * TRACE_PACKET]);
+      }
       const double at = std::min(shown.steps[ray] * 256.0 / shown.span.greatest, 255.0);
       const auto code = turbo_code(std::floor(at) / 255);
       EXPECT_EQ(pixel_of(shown, ray), 0xff000000u | uint{code[2]} << 16 | uint{code[1]} << 8 | code[0]);
@@ -220,7 +221,9 @@ TEST_F(ShowViews, ClustersGrowFromTrianglesIntoTheTree) {
     std::map<uint, uint> grown;
     for (uint i = 0; i < count; ++i)
       ASSERT_EQ(grown.try_emplace(before[i], clusters[i]).first->second, clusters[i]) << "round " << round;
-    if (round == 0) EXPECT_EQ(clusters, before);
+    if (round == 0) {
+      EXPECT_EQ(clusters, before);
+    }
     before = clusters;
     if (shown.rounds[round].cluster_count == 1) break;
   }
