@@ -9,12 +9,12 @@ lavapipe_dir=$build_dir/lavapipe
 
 build_packages=(
   g++ cmake ninja-build glslang-tools spirv-tools libvulkan-dev libglm-dev libglfw3-dev
-  libtinyobjloader-dev libtinygltf-dev libvalijson-dev libcli11-dev nlohmann-json3-dev libstb-dev libtbb-dev
-  libgmp-dev mesa-vulkan-drivers xz-utils
+  libimgui-dev libtinyobjloader-dev libtinygltf-dev libvalijson-dev libcli11-dev nlohmann-json3-dev libstb-dev
+  libtbb-dev libgmp-dev mesa-vulkan-drivers xz-utils
 )
 test_packages=(
   libgtest-dev libgmock-dev libbenchmark-dev vulkan-validationlayers clang-format libembree-dev
-  clang libclang-rt-dev
+  xvfb xdotool clang libclang-rt-dev
 )
 # Built from the same sources as the lavapipe; without its own libdrm it would meet the system's older one.
 lavapipe_packages=(mesa-vulkan-drivers libdrm2 libdrm-amdgpu1)

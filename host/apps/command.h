@@ -45,6 +45,7 @@ struct NamedCommand {
 };
 
 std::unique_ptr<Command> make_render();
+std::unique_ptr<Command> make_view();
 std::unique_ptr<Command> make_build();
 std::unique_ptr<Command> make_lockstep();
 std::unique_ptr<Command> make_compare();

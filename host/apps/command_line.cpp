@@ -14,6 +14,7 @@ namespace {
 
 constexpr NamedCommand commands[] = {
     {"render", "build, trace, write the picture", make_render},
+    {"view", "the scene in a window, with what it costs", make_view},
     {"build", "build only: time of every kernel, quality of the tree", make_build},
     {"lockstep", "every stage on device and CPU; the first difference, or none", make_lockstep},
     {"compare", "every builder on these scenes: the report's Table I", make_compare},

@@ -99,6 +99,8 @@ Arena::Arena(Device& device, const std::vector<std::uint64_t>& block_bytes, cons
 
 Arena::~Arena() { free_unless_hung(*blocks_->context, blocks_); }
 
+VkBuffer Arena::buffer(std::uint32_t block) const { return *blocks_->list.at(block).buffer; }
+
 std::byte* Arena::mapped(std::uint32_t block) const { return blocks_->list.at(block).mapped; }
 
 void Arena::upload(std::uint32_t block, std::uint64_t offset, std::span<const std::byte> bytes) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vulkan/vulkan_core.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -28,6 +30,9 @@ class Arena {
 
   // Where the host has mapped a block; null where it has not.
   std::byte* mapped(std::uint32_t block) const;
+
+  // Whose bytes a block is, for copies of the caller's own.
+  VkBuffer buffer(std::uint32_t block) const;
 
   struct Blocks;
   const Blocks& blocks() const { return *blocks_; }

@@ -31,7 +31,11 @@ TraceOptions within_loop_turns(TraceOptions wanted, const DeviceProperties& devi
 
 CheckedDevice::CheckedDevice(const DeviceOptions& options, const DeviceChoices& choices, DeviceUse use,
                              Note note, const Note& waiting)
-    : note_(std::move(note)), device_(options), walk_(choices.walk) {
+    : CheckedDevice(Device(options), choices, std::move(use), std::move(note), waiting) {}
+
+CheckedDevice::CheckedDevice(Device device, const DeviceChoices& choices, DeviceUse use, Note note,
+                             const Note& waiting)
+    : note_(std::move(note)), device_(std::move(device)), walk_(choices.walk) {
   if (properties().loop_turn_limit != 0) {  // one of the old lavapipes
     const std::string& remedy = choices.slow_driver_remedy;
     this->note("lavapipe of " + properties().driver + " is 4 to 15 times slower than that of Mesa 25" +

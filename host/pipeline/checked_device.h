@@ -37,12 +37,16 @@ class CheckedDevice {
   // fails, std::invalid_argument for choices that cannot be had.
   CheckedDevice(const DeviceOptions& options, const DeviceChoices& choices, DeviceUse use, Note note = {},
                 const Note& waiting = {});
+  // The same of a device that is there; it has a queue.
+  CheckedDevice(Device device, const DeviceChoices& choices, DeviceUse use, Note note = {},
+                const Note& waiting = {});
 
   Device& device() { return device_; }
   const DeviceProperties& properties() const { return device_.properties(); }
   bool lookback() const { return lookback_; }
   const Variants& variants() const { return variants_; }
   void set_variants(const Variants& variants) { variants_ = variants; }
+  void set_walk(const WalkChoice& walk) { walk_ = walk; }
 
   // `wanted` with lookback and variants.
   BuildOptions build_options(BuildOptions wanted) const;

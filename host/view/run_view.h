@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "measure/builder_choice.h"
+#include "measure/json.h"
+#include "pipeline/checked_device.h"
+#include "pipeline/trace_plan.h"
+#include "render/show.h"
+#include "scene/scene_source.h"
+
+namespace coppice {
+
+// What a window begins with.
+struct ViewRun {
+  SceneOptions scene{};
+  BuilderChoice builder{};
+  DeviceOptions device{};
+  DeviceChoices choices{};
+  TraceOptions trace{};          // its size is the window's
+  std::vector<double> camera{};  // see given_view; empty: the scene's
+  ShowOptions show{};
+  bool paused = false;       // a moving scene stands still at first
+  bool rebuild = false;      // the tree is made anew for every frame
+  bool panes = true;         // they are shown
+  std::uint32_t frames = 0;  // ends after so many, one step of the scene each; 0: when it is closed
+  std::string pictures = "coppice-view";  // what the names of pictures begin with
+  bool talks = true;                      // what happens goes to stdout, a line each
+};
+
+struct ViewReport {
+  std::string scene, builder, device, driver, walk;
+  std::uint64_t triangles = 0;
+  std::uint32_t width = 0, height = 0;  // of the last picture
+  std::vector<double> frame_ms, device_ms;
+  std::uint64_t image_hash = 0;
+  std::vector<std::string> validation_messages;
+  bool work_left = false;  // a scene is still being opened by a thread, which ends with the program
+};
+Json to_json(const ViewReport& report);
+
+// Opens the window, and returns when it is closed. Throws InputError for a scene at the beginning that cannot
+// be opened, DeviceError where there is no display, no device that presents, or it fails, and Interrupted.
+ViewReport run_view(const ViewRun& run, const Note& note);
+
+}  // namespace coppice

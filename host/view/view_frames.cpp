@@ -1,0 +1,215 @@
+#include "view/view_frames.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "analysis/quality.h"
+#include "measure/show_frame.h"
+#include "pipeline/bounded_submits.h"
+#include "render/scene_room.h"
+#include "stages/errors.h"
+
+namespace coppice {
+
+namespace {
+
+// Kernels that a reader takes for one; else a kernel is a group of its own.
+std::string group_of(std::string_view stage) {
+  constexpr std::pair<std::string_view, const char*> prefixes[] = {
+      {"vertex_", "vertices"}, {"gather_", "bounds"}, {"primitive_", "bounds"}, {"sort_", "sort"},
+      {"ploc_", "PLOC"},       {"hploc_", "H-PLOC"},  {"wide_", "wide"},        {"trace_", "trace"},
+      {"morton_", "Morton"},   {"camera_", "camera"}};
+  for (const auto& [prefix, name] : prefixes) {
+    if (stage.starts_with(prefix)) return name;
+  }
+  return std::string(stage);
+}
+
+// Marks where another group begins; clears go with what follows them.
+std::vector<std::string> mark_groups(std::vector<Step>& steps) {
+  std::vector<std::string> groups;
+  std::vector<Step> marked;
+  std::vector<Step> clears;
+  for (Step& step : steps) {
+    const StageDeclaration* const stage = stage_of(step);
+    if (!stage) {
+      clears.push_back(std::move(step));
+      continue;
+    }
+    const std::string group = group_of(stage->name);
+    if (groups.empty() || groups.back() != group) {
+      if (!groups.empty()) marked.push_back(Mark{});
+      groups.push_back(group);
+    }
+    marked.insert(marked.end(), clears.begin(), clears.end());
+    clears.clear();
+    marked.push_back(std::move(step));
+  }
+  marked.insert(marked.end(), clears.begin(), clears.end());
+  steps = std::move(marked);
+  return groups;
+}
+
+}  // namespace
+
+OpenedScene open_for_view(const SceneOptions& options, const BuilderChoice& builder) {
+  OpenedScene opened;
+  opened.options = options;
+  check_room(options.spec, DeviceRoom{}, [](const std::string&) {});
+  opened.scene = open_scene(options.spec, options.up);
+  opened.arrays = scene_arrays(opened.scene);
+  opened.box = box_of(opened.arrays.triangles);
+  if (builder.on_device()) return opened;
+  const auto start = std::chrono::steady_clock::now();
+  const BuilderConfig config{.radius = builder.radius,
+                             .morton_bits = builder.bits_for(opened.arrays.triangles),
+                             .leaf_size = builder.leaf_size};
+  opened.bvh = find_cpu_builder(builder.name).build(opened.arrays.triangles, config);
+  check_height(opened.bvh);
+  opened.build_ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  opened.built_by = builder;
+  return opened;
+}
+
+FramePlan ViewFrames::plan_all(ViewFrames& frames, CheckedDevice& device) {
+  const OpenedScene& opened = frames.opened_;
+  FrameOptions options{.trace =
+                           device.picture_options(frames.options_.trace, opened.arrays.triangle_count())};
+  options.trace.directional_light = opened.scene.light.radiance != vec3(0);
+  options.trace.show = kernel_view(frames.options_.show.show);
+  if (frames.options_.builder.on_device()) {
+    options.build = device.build_options(frames.options_.builder.build_options(frames.morton_bits_));
+    frames.vertices_ = plan_vertices(frames.layout_, frames.motion_, opened.arrays.triangle_count());
+    frames.at_ = plan_motion(frames.layout_, frames.motion_);
+  } else {
+    options.node_count = opened.bvh.nodes.size();
+    if (opened.bvh.nodes.empty()) options.trace.walk = Walk::brute_force;
+  }
+  return plan_frame(frames.layout_, opened.arrays, options);
+}
+
+ViewFrames::ViewFrames(CheckedDevice& device, const OpenedScene& opened, const ViewOptions& options)
+    : opened_(opened),
+      options_(options),
+      morton_bits_(options.builder.bits_for(opened.arrays.triangles)),
+      motion_(motion_of(opened.scene)),
+      layout_(device.properties().max_block_bytes),
+      plan_(plan_all(*this, device)),
+      executor_(device.device(), layout_) {
+  upload_frame(executor_, plan_.tree, plan_.trace, opened.arrays, Film{});
+  if (plan_.build) {
+    upload_vertices(executor_, vertices_, motion_, std::span<const uvec3>(opened.scene.indices));
+  } else {
+    upload_bvh(executor_, plan_.tree, opened.bvh);
+  }
+  record();
+}
+
+void ViewFrames::record() {
+  Chain tree = executor_.chain(), trace = executor_.chain();
+  if (plan_.build) {
+    append_vertices(tree, vertices_, at_, motion_);
+    append_build(tree, *plan_.build, {triangles_of(tree, vertices_), {}});
+  }
+  append_frame_wide(tree, plan_);
+  append_trace(trace, plan_.tree, plan_.trace);
+  tree_groups_ = mark_groups(tree.steps());
+  trace_groups_ = mark_groups(trace.steps());
+  if (!tree.steps().empty()) tree_recorder_.emplace(executor_.record(tree.steps()));
+  trace_recorder_.emplace(executor_.record(trace.steps()));
+}
+
+void ViewFrames::submit(Recorder& recorder, const std::vector<std::string>& names, ViewedFrame& frame) {
+  const Recorder::Times times = recorder.submit_and_wait(piece_limit_seconds);
+  frame.device_ms += times.total_ms;
+  frame.wall_ms += times.wall_ms;
+  if (times.marks_ms.size() + 1 != names.size()) return;  // no timestamps
+  double before = 0;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const double until = i < times.marks_ms.size() ? times.marks_ms[i] : times.total_ms;
+    const auto same = std::ranges::find(frame.groups, names[i], &KernelGroup::name);
+    if (same == frame.groups.end()) {
+      frame.groups.push_back({names[i], until - before});
+    } else {
+      same->ms += until - before;
+    }
+    before = until;
+  }
+}
+
+void ViewFrames::set_show(const ShowOptions& show) {
+  options_.show = show;
+  values_old_ = true;
+}
+
+ShowSpan ViewFrames::span(const Film& film) const {
+  return span_of(options_.show, film, opened_.box, walk(), opened_.arrays.triangle_count());
+}
+
+// The place of each triangle in the order of the last sort, or the cluster it was in.
+void ViewFrames::upload_values() {
+  values_old_ = false;
+  const Slot<uint>& slot = plan_.trace.show.primitive_values;
+  if (slot.count == 0) return;
+  std::vector<uint> values;
+  if (options_.show.show == Show::morton) {
+    values = plan_.build ? ranks_in(executor_.read(plan_.build->values[0]), opened_.arrays.triangle_count())
+                         : shown_values(options_.show, opened_.arrays.triangles, morton_bits_, {});
+  } else {
+    const std::vector<Node> nodes = tree();
+    std::vector<PlocRound> rounds;
+    if (plan_.build && plan_.build->rounds.count > 0) rounds = executor_.read(plan_.build->rounds);
+    values = shown_values(options_.show, opened_.arrays.triangles, morton_bits_, {nodes, rounds});
+  }
+  executor_.upload(slot, std::span<const uint>(values));
+}
+
+ViewedFrame ViewFrames::draw(const Film& film, double seconds, bool rebuild) {
+  ViewedFrame frame;
+  const bool moved = can_move() && seconds_ != seconds;
+  frame.built = !seconds_ || moved || (rebuild && plan_.build);
+  if (frame.built) {
+    if (plan_.build) upload_step(executor_, at_, motion_step(motion_, pose_at(motion_, seconds), seconds));
+    if (tree_recorder_) submit(*tree_recorder_, tree_groups_, frame);
+    seconds_ = seconds;
+    values_old_ = true;
+  }
+  if (values_old_) upload_values();
+  executor_.upload(plan_.trace.film, std::span<const Film>(&film, 1));
+  upload_show(executor_, plan_.trace.show, options_.show.show, span(film));
+  submit(*trace_recorder_, trace_groups_, frame);
+  const BuildState state = executor_.read(plan_.tree.state)[0];
+  if (const std::string errors = describe_error_word(state.error_word); !errors.empty())
+    throw DeviceError("the frame at second " + std::to_string(seconds) + ": " + errors);
+  frame.counts = counts_of(executor_.read(plan_.trace.counters)[0]);
+  if (plan_.trace.show.range.count > 0)
+    frame.seen = seen_in(executor_.read(plan_.trace.show.range)[0], options_.show.show);
+  return frame;
+}
+
+std::vector<Node> ViewFrames::tree() const {
+  const BuildState state = executor_.read(plan_.tree.state)[0];
+  const std::uint64_t count = plan_.build ? state.active_count ? 2 * std::uint64_t{state.active_count} - 1 : 0
+                                          : plan_.tree.nodes.count;
+  return executor_.read(Slot<Node>{plan_.tree.nodes.place, count});
+}
+
+ViewedTree ViewFrames::describe() const {
+  const TreeQuality quality = measure_quality(tree());
+  ViewedTree described{quality.nodes, quality.leaves, quality.depth, quality.sah, {}};
+  if (!plan_.build || plan_.build->rounds.count == 0) return described;
+  for (const PlocRound& round : executor_.read(plan_.build->rounds)) {
+    if (round.cluster_count == 0) break;
+    described.clusters.push_back(round.cluster_count);
+  }
+  return described;
+}
+
+std::uint64_t ViewFrames::device_bytes() const {
+  std::uint64_t bytes = 0;
+  for (const std::uint64_t block : layout_.block_bytes()) bytes += block;
+  return bytes;
+}
+
+}  // namespace coppice

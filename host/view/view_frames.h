@@ -1,0 +1,109 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "measure/builder_choice.h"
+#include "pipeline/checked_device.h"
+#include "render/frame.h"
+#include "render/moving_vertices.h"
+#include "render/show.h"
+#include "stages/gpu_executor.h"
+
+namespace coppice {
+
+// A scene that has been opened, and its tree where the host builds that.
+struct OpenedScene {
+  SceneOptions options{};
+  Scene scene;
+  SceneArrays arrays;
+  Aabb box;
+  std::optional<BuilderChoice> built_by{};  // a builder of the host
+  Bvh bvh{};
+  double build_ms = 0;  // that it took
+};
+
+// Reads and makes all of it; with a builder of the device no tree. Throws as open_scene does.
+OpenedScene open_for_view(const SceneOptions& options, const BuilderChoice& builder);
+
+struct ViewOptions {
+  BuilderChoice builder{};
+  TraceOptions trace{};  // and of what size; the walk is chosen
+  ShowOptions show{};
+};
+
+// Device time of kernels that belong together, in the order in which they run.
+struct KernelGroup {
+  std::string name;
+  double ms = 0;
+};
+
+struct ViewedFrame {
+  bool built = false;               // the tree was made anew
+  std::vector<KernelGroup> groups;  // empty on a device without timestamps
+  double device_ms = 0, wall_ms = 0;
+  TraceCounts counts;
+  ShowSpan seen;  // of a view with a range
+};
+
+struct ViewedTree {
+  std::uint64_t nodes = 0, leaves = 0;
+  std::uint32_t depth = 0;
+  double sah = 0;
+  std::vector<std::uint32_t> clusters;  // at the beginning of each round of PLOC
+};
+
+// A scene as a window shows it, frame by frame: where its vertices are, its tree and its picture, in at most
+// two submits. Each frame is waited for. All that does not change between frames is recorded once.
+class ViewFrames {
+ public:
+  // The opened scene must outlive it. Throws DeviceError or LayoutError where the device does not hold it.
+  ViewFrames(CheckedDevice& device, const OpenedScene& opened, const ViewOptions& options);
+
+  // The picture of that film at that time of the scene. The tree is made anew where the time is another one,
+  // or if asked for; one of the host is made once, and its scene stands still.
+  ViewedFrame draw(const Film& film, double seconds, bool rebuild);
+
+  // What is seen of PLOC's rounds from the next frame on, or of the tree's levels.
+  void set_show(const ShowOptions& show);
+
+  bool can_move() const { return opened_.scene.motion && plan_.build.has_value(); }
+  Walk walk() const { return plan_.trace.options.walk; }
+  ShowSpan span(const Film& film) const;
+
+  // Of the last frame; both are read from the device.
+  std::vector<uint> picture() const { return executor_.read(plan_.trace.image); }
+  std::vector<Node> tree() const;
+  ViewedTree describe() const;
+
+  // Where the picture lies.
+  const Slot<uint>& image() const { return plan_.trace.image; }
+  VkBuffer image_buffer() { return executor_.arena().buffer(plan_.trace.image.place.block); }
+
+  std::uint64_t device_bytes() const;
+  const std::vector<SlotListing>& slots() const { return layout_.slots(); }
+
+ private:
+  static FramePlan plan_all(ViewFrames& frames, CheckedDevice& device);
+  void record();
+  void upload_values();
+  void submit(Recorder& recorder, const std::vector<std::string>& names, ViewedFrame& frame);
+
+  const OpenedScene& opened_;
+  ViewOptions options_;
+  std::uint32_t morton_bits_;
+  Motion motion_;
+  Layout layout_;
+  MovingVertices vertices_;
+  MotionSlots at_;
+  FramePlan plan_;
+  GpuExecutor executor_;
+  std::optional<Recorder> tree_recorder_, trace_recorder_;
+  std::vector<std::string> tree_groups_, trace_groups_;  // one a mark, and one for what is behind the last
+  std::optional<double> seconds_;                        // of the tree
+  bool values_old_ = true;                               // what is shown of primitives
+};
+
+}  // namespace coppice

@@ -1,0 +1,525 @@
+#include "view/viewer.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <glm/geometric.hpp>
+
+#include "analysis/tree_hash.h"
+#include "gpu/device.h"
+#include "measure/table.h"
+#include "pipeline/interruption.h"
+#include "pipeline/verdicts.h"
+#include "render/box_lines.h"
+#include "scene/input_error.h"
+#include "scene/motion.h"
+#include "scene/printable.h"
+#include "scene/write_png.h"
+
+namespace coppice {
+
+namespace {
+
+using ViewClock = std::chrono::steady_clock;
+
+double seconds_between(ViewClock::time_point from, ViewClock::time_point to) {
+  return std::chrono::duration<double>(to - from).count();
+}
+
+bool same_tree(const ViewSettings& a, const ViewSettings& b) {
+  return a.builder.name == b.builder.name && a.builder.radius == b.builder.radius &&
+         a.builder.morton_bits == b.builder.morton_bits && a.builder.leaf_size == b.builder.leaf_size;
+}
+
+bool same_scene(const ViewSettings& a, const ViewSettings& b) {
+  return a.scene.spec == b.scene.spec && a.scene.up == b.scene.up;
+}
+
+bool same_show(const ShowOptions& a, const ShowOptions& b) {
+  return a.show == b.show && a.most_steps == b.most_steps && a.round == b.round && a.level == b.level;
+}
+
+double size_of(const Aabb& box) {
+  const double size = glm::length(glm::dvec3(box.box_max) - glm::dvec3(box.box_min));
+  return size > 0 && std::isfinite(size) ? size : 1;
+}
+
+// For a shell.
+std::string shell_word(const std::string& word) {
+  if (!word.empty() && word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                                              "_-./:,+=") == std::string::npos)
+    return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? "'\\''" : std::string(1, c);
+  return text + "'";
+}
+
+Viewer& viewer_of(GLFWwindow* window) { return *static_cast<Viewer*>(glfwGetWindowUserPointer(window)); }
+
+// Before Dear ImGui's own, which hand on what they get.
+void set_callbacks(GLFWwindow* window) {
+  glfwSetKeyCallback(window, [](GLFWwindow* its, int key, int, int action, int mods) {
+    if (action != GLFW_RELEASE) viewer_of(its).on_key(key, mods);
+  });
+  glfwSetCharCallback(
+      window, [](GLFWwindow* its, unsigned int character) { viewer_of(its).on_character(character); });
+  glfwSetMouseButtonCallback(window, [](GLFWwindow* its, int button, int action, int mods) {
+    viewer_of(its).on_button(button, action == GLFW_PRESS, (mods & GLFW_MOD_SHIFT) != 0);
+  });
+  glfwSetCursorPosCallback(window,
+                           [](GLFWwindow* its, double x, double y) { viewer_of(its).on_cursor(x, y); });
+  glfwSetScrollCallback(window, [](GLFWwindow* its, double, double y) { viewer_of(its).on_scroll(y); });
+  glfwSetDropCallback(window, [](GLFWwindow* its, int count, const char** paths) {
+    if (count > 0) viewer_of(its).on_drop(paths[0]);
+  });
+}
+
+const Window& with_callbacks(const Window& window, Viewer* viewer) {
+  glfwSetWindowUserPointer(window.handle(), viewer);
+  set_callbacks(window.handle());
+  return window;
+}
+
+}  // namespace
+
+Viewer::Viewer(const ViewRun& run, const Note& note)
+    : run_(run),
+      note_(note),
+      window_({.title = "Coppice",
+               .width = static_cast<int>(run.trace.width),
+               .height = static_cast<int>(run.trace.height),
+               .select = run.device.select,
+               .validate = run.device.validate}),
+      screen_(with_callbacks(window_, this)),
+      plays_(!run.paused),
+      panes_(run.panes),
+      typed_scene_(run.scene.spec) {
+  asked_ = {.scene = run.scene, .builder = run.builder, .walk = run.choices.walk, .show = run.show};
+  asked_.rebuild = run.rebuild;
+  asked_.draws_always = run.frames != 0;
+  shown_ = asked_;
+  camera_numbers_ = run.camera;
+}
+
+Viewer::~Viewer() { glfwSetWindowUserPointer(window_.handle(), nullptr); }
+
+void Viewer::say(const std::string& line) const {
+  if (!run_.talks) return;
+  std::printf("%s\n", line.c_str());
+  std::fflush(stdout);
+}
+
+void Viewer::complain(const std::string& line) {
+  complaint_ = line;
+  std::fprintf(stderr, "coppice: %s\n", line.c_str());
+}
+
+double Viewer::scene_step() const {
+  const Motion* const motion = opened_ ? opened_->scene.motion.get() : nullptr;
+  return 1 / (motion ? motion->frames_per_second : 30);
+}
+
+double Viewer::scene_duration() const {
+  const Motion* const motion = opened_ ? opened_->scene.motion.get() : nullptr;
+  return motion ? motion->duration_seconds : 1;
+}
+
+// --- Input.
+
+void Viewer::on_key(int key, int) {
+  if (ImGui::GetIO().WantTextInput) return;
+  switch (key) {
+    case GLFW_KEY_ESCAPE:
+      if (help_) {
+        help_ = false;
+      } else {
+        glfwSetWindowShouldClose(window_.handle(), GLFW_TRUE);
+      }
+      break;
+    case GLFW_KEY_SPACE:
+      plays_ = !plays_;
+      break;
+    case GLFW_KEY_PERIOD:
+    case GLFW_KEY_COMMA:
+      plays_ = false;
+      seconds_ = std::max(seconds_ + (key == GLFW_KEY_PERIOD ? 1 : -1) * scene_step(), 0.0);
+      break;
+    case GLFW_KEY_P:
+      request_.picture = true;
+      break;
+    case GLFW_KEY_C:
+      request_.camera = true;
+      break;
+    case GLFW_KEY_R:
+      request_.reset = true;
+      break;
+    case GLFW_KEY_F:
+      flies_ = !flies_;
+      break;
+    case GLFW_KEY_F1:
+      help_ = !help_;
+      break;
+    case GLFW_KEY_TAB:
+      panes_ = !panes_;
+      break;
+    default:
+      if (key >= GLFW_KEY_1 && key <= GLFW_KEY_8) asked_.show.show = static_cast<Show>(key - GLFW_KEY_1);
+      break;
+  }
+}
+
+// Wherever the layout of the keyboard has it.
+void Viewer::on_character(unsigned int character) {
+  if (character == '?' && !ImGui::GetIO().WantTextInput) help_ = !help_;
+}
+
+void Viewer::on_button(int button, bool down, bool shift) {
+  if (!down) {
+    dragging_ = 0;
+  } else if (!ImGui::GetIO().WantCaptureMouse) {
+    dragging_ = button == GLFW_MOUSE_BUTTON_LEFT && !shift ? 1 : 2;
+  }
+}
+
+void Viewer::on_cursor(double x, double y) {
+  Drag* const drag = dragging_ == 1 ? &turns_ : dragging_ == 2 ? &pans_ : nullptr;
+  if (drag) *drag = {drag->x + x - cursor_x_, drag->y + y - cursor_y_};
+  cursor_x_ = x;
+  cursor_y_ = y;
+}
+
+void Viewer::on_scroll(double steps) {
+  if (!ImGui::GetIO().WantCaptureMouse) zooms_ += steps;
+}
+
+void Viewer::on_drop(const std::string& path) {
+  asked_.scene.spec = typed_scene_ = path;
+  asked_.scene.up = "y";
+}
+
+// --- A frame.
+
+bool Viewer::goes_on() const {
+  throw_if_interrupted();
+  if (glfwWindowShouldClose(window_.handle())) return false;
+  return run_.frames == 0 || presented_ < run_.frames;
+}
+
+// Until something happens, where nothing goes on by itself.
+void Viewer::wait_for_events() {
+  const VkExtent2D size = window_.framebuffer();
+  const bool hidden = size.width == 0 || size.height == 0;
+  const bool moves = frames_ && ((plays_ && frames_->can_move()) || asked_.rebuild || asked_.draws_always);
+  const bool still = frames_ && !moves && !picture_old_;
+  if (hidden) {
+    glfwWaitEventsTimeout(0.1);
+  } else if (still || !frames_) {
+    glfwWaitEventsTimeout(still ? 0.25 : 0.02);
+  } else {
+    glfwPollEvents();
+  }
+}
+
+ViewReport Viewer::run() {
+  const InterruptionGuard guard;
+  screen_.begin();
+  messages();
+  screen_.show({});  // the kernels may have to be compiled for the check
+  const DeviceUse use{.build = run_.builder.least_build_options(), .traces = {run_.trace}, .inputs = true};
+  device_.emplace(Device(window_.adopted(), run_.device.pipeline_folder, run_.device.log), run_.choices, use,
+                  note_);
+  start_scene();
+  last_turn_ = ViewClock::now();
+  while (goes_on()) {
+    wait_for_events();
+    turn();
+  }
+  screen_.wait();
+  return report();
+}
+
+void Viewer::turn() {
+  const auto now = ViewClock::now();
+  const double passed = seconds_between(last_turn_, now);
+  last_turn_ = now;
+  take_scene();
+  if (opened_ &&
+      (!same_scene(asked_, shown_) ||
+       (!same_tree(asked_, shown_) && !(asked_.builder.on_device() && shown_.builder.on_device()))))
+    start_scene();
+  remake_frames();
+  move_camera(std::min(passed, 0.1));
+  move_time(std::min(passed, 0.5));
+  draw_picture();
+  screen_.begin();
+  panes();
+  PicturePlace picture;
+  if (frames_) picture = {frames_->image_buffer(), frames_->image().place.offset, width_, height_};
+  if (!screen_.show(picture)) return;
+  if (!frames_) return;
+  ++presented_;
+  if (presented_ > 1) frame_ms_.push_back(passed * 1000);
+  answer_requests();
+}
+
+void Viewer::start_scene() {
+  shown_.scene = asked_.scene;
+  shown_.builder = asked_.builder;
+  job_.start(asked_.scene, asked_.builder);
+}
+
+void Viewer::take_scene() {
+  SceneJob::Result result = job_.take();
+  if (!result.complaint.empty()) {
+    if (!opened_) throw InputError(result.complaint);
+    complain(result.complaint);
+    asked_.scene = shown_.scene = opened_->options;
+    if (opened_->built_by) asked_.builder = shown_.builder = *opened_->built_by;
+  }
+  if (!result.opened) return;
+  const bool is_new = !opened_ || opened_->options.spec != result.opened->options.spec;
+  screen_.wait();
+  frames_.reset();
+  opened_ = std::move(result.opened);
+  complaint_.clear();
+  for (const std::string& warning : opened_->scene.warnings)
+    std::fprintf(stderr, "warning: %s\n", printable(std::string_view(warning)).c_str());
+  if (!is_new) return;
+  if (presented_ > 0) camera_numbers_.clear();
+  camera_.reset();
+  seconds_ = 0;
+  say(format("scene %s: %u triangles%s", shell_word(opened_->options.spec).c_str(),
+             opened_->arrays.triangle_count(), opened_->scene.motion ? ", moving" : ""));
+}
+
+// For another size, builder, tracer or view than those of the last picture.
+void Viewer::remake_frames() {
+  const VkExtent2D size = window_.framebuffer();
+  if (!opened_ || size.width == 0 || size.height == 0) return;
+  const std::uint32_t width = std::max(size.width / asked_.divide, 1u);
+  const std::uint32_t height = std::max(size.height / asked_.divide, 1u);
+  const bool same_kernels = kernel_view(asked_.show.show) == kernel_view(shown_.show.show);
+  if (frames_ && width == width_ && height == height_ && same_tree(asked_, shown_) && same_kernels &&
+      asked_.walk.said == shown_.walk.said) {
+    if (!same_show(asked_.show, shown_.show)) {
+      frames_->set_show(asked_.show);
+      picture_old_ = true;
+    }
+    shown_ = asked_;
+    return;
+  }
+  if (job_.is_under_way() && frames_ && !same_tree(asked_, shown_)) return;
+  const bool had_frames = frames_ != nullptr;
+  try {
+    make_frames(width, height);
+  } catch (const DeviceHung&) {
+    throw;
+  } catch (const std::exception& error) {  // too large for the device, or a view that the tracer has not
+    if (!had_frames) throw;
+    complain(error.what());
+    asked_ = shown_;
+    make_frames(width, height);
+  }
+  shown_ = asked_;
+}
+
+void Viewer::make_frames(std::uint32_t width, std::uint32_t height) {
+  screen_.wait();
+  frames_.reset();
+  ViewOptions options{.builder = asked_.builder, .trace = run_.trace, .show = asked_.show};
+  options.trace.width = width;
+  options.trace.height = height;
+  device_->set_walk(asked_.walk);
+  DeviceUse use{.builds = options.builder.on_device() != nullptr,
+                .traces = {device_->picture_options(options.trace, opened_->arrays.triangle_count())},
+                .inputs = true};
+  use.build = device_->build_options(options.builder.least_build_options());
+  kept_check_device(device_->device(), use);
+  frames_ = std::make_unique<ViewFrames>(*device_, *opened_, options);
+  if (width != width_ || height != height_) say(format("size %ux%u", width, height));
+  width_ = width;
+  height_ = height;
+  if (camera_numbers_.empty() && !camera_moves()) camera_numbers_ = camera_now();
+  picture_old_ = true;
+  statistics_ = {};
+}
+
+void Viewer::move_camera(double seconds) {
+  if (!frames_) return;
+  const auto held = [&](int key) {
+    return !ImGui::GetIO().WantTextInput && glfwGetKey(window_.handle(), key) == GLFW_PRESS ? 1 : 0;
+  };
+  const double speed = 0.25 * seconds * (held(GLFW_KEY_LEFT_SHIFT) ? 4 : 1);
+  const double forward = speed * (held(GLFW_KEY_W) - held(GLFW_KEY_S));
+  const double right = speed * (held(GLFW_KEY_D) - held(GLFW_KEY_A));
+  const double up = speed * (held(GLFW_KEY_E) - held(GLFW_KEY_Q));
+  const bool moves = forward != 0 || right != 0 || up != 0 || turns_.x != 0 || turns_.y != 0 ||
+                     pans_.x != 0 || pans_.y != 0 || zooms_ != 0;
+  if (request_.reset) {
+    camera_.reset();
+    camera_numbers_.clear();
+    if (!camera_moves()) camera_numbers_ = camera_now();
+    request_.reset = false;
+    picture_old_ = true;
+  }
+  if (moves && !camera_) {
+    if (camera_numbers_.empty()) camera_numbers_ = camera_now();
+    camera_.emplace(given_view(opened_->scene, camera_numbers_), size_of(opened_->box));
+  }
+  if (moves) {
+    const double pixels = std::max(static_cast<double>(window_.framebuffer().height), 1.0);
+    if (flies_) {
+      camera_->look(turns_.x / pixels, turns_.y / pixels);
+    } else {
+      camera_->orbit(turns_.x / pixels, turns_.y / pixels);
+    }
+    camera_->pan(pans_.x / pixels, pans_.y / pixels);
+    if (flies_) {
+      camera_->fly(0.02 * zooms_, 0, 0);
+    } else {
+      camera_->zoom(zooms_);
+    }
+    camera_->fly(forward, right, up);
+    camera_numbers_ = camera_->numbers(opened_->scene);
+    picture_old_ = true;
+  }
+  turns_ = pans_ = {};
+  zooms_ = 0;
+}
+
+void Viewer::move_time(double seconds) {
+  if (!frames_ || !frames_->can_move()) return;
+  if (plays_ && presented_ > 0) seconds_ += run_.frames != 0 ? scene_step() : seconds;
+}
+
+void Viewer::draw_picture() {
+  if (!frames_) return;
+  const bool moves = (plays_ && frames_->can_move()) || asked_.rebuild || asked_.draws_always;
+  static_assert(std::is_trivially_copyable_v<Film>);
+  Film film = film_at_time();
+  if (!moves && !picture_old_ && seconds_ == drawn_seconds_) return;
+  const auto start = ViewClock::now();
+  const ViewedFrame frame = frames_->draw(film, seconds_, asked_.rebuild);
+  film_ = film;
+  drawn_seconds_ = seconds_;
+  picture_old_ = false;
+  note_frame(frame, seconds_between(start, ViewClock::now()) * 1000);
+}
+
+bool Viewer::camera_moves() const {
+  const Motion* const motion = opened_->scene.motion.get();
+  return motion && pose_at(*motion, seconds_).camera.has_value();
+}
+
+// Where nobody has moved it.
+std::vector<double> Viewer::camera_now() const {
+  const Scene& scene = opened_->scene;
+  if (camera_moves())
+    return coppice::camera_numbers(scene, view_of(*pose_at(*scene.motion, seconds_).camera));
+  return coppice::camera_numbers(scene, choose_view(scene, {}, width_, height_));
+}
+
+// By the camera that was given or moved, or the one of the scene, as it moves.
+Film Viewer::film_at_time() const {
+  const Scene& scene = opened_->scene;
+  if (camera_numbers_.empty() && camera_moves())
+    return make_film(*pose_at(*scene.motion, seconds_).camera, width_, height_, run_.trace.samples);
+  return make_film(scene, camera_numbers_, width_, height_, run_.trace.samples);
+}
+
+void Viewer::note_frame(const ViewedFrame& frame, double ms) {
+  device_ms_.push_back(frame.device_ms);
+  statistics_.last = frame;
+  statistics_.frames.push_back({ms, frame.device_ms, frame.groups, frame.built});
+  if (statistics_.frames.size() > ViewStatistics::kept) statistics_.frames.pop_front();
+  for (const KernelGroup& group : frame.groups) {
+    if (std::ranges::find(statistics_.groups, group.name) == statistics_.groups.end())
+      statistics_.groups.push_back(group.name);
+  }
+  // Of a tree that changes a few times a second, as it has to be read from the device.
+  const auto now = ViewClock::now();
+  const bool shows_boxes = asked_.show.show == Show::boxes;
+  if (shows_boxes && (frame.built || boxes_.empty())) boxes_ = frames_->tree();
+  if (!shows_boxes) boxes_.clear();
+  if (statistics_.has_tree && (!frame.built || seconds_between(last_description_, now) < 0.5)) return;
+  if (!panes_ && statistics_.has_tree) return;
+  statistics_.tree = frames_->describe();
+  statistics_.has_tree = true;
+  last_description_ = now;
+}
+
+// --- What the user asks for.
+
+void Viewer::answer_requests() {
+  if (request_.picture) write_picture();
+  if (request_.camera) copy_camera();
+  request_.picture = request_.camera = false;
+}
+
+void Viewer::write_picture() {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  fs::path path;
+  for (int number = 1; number < 100000; ++number) {
+    path = run_.pictures + format("-%03d.png", number);
+    if (!fs::exists(path, error)) break;
+  }
+  std::vector<uint> image = frames_->picture();
+  if (asked_.show.show == Show::boxes)
+    draw_box_lines(image, width_, height_, box_lines(frames_->tree(), film_, asked_.show.level, BOXES_SHOWN),
+                   asked_.show.level);
+  try {
+    write_png(path, width_, height_, image);
+    say("wrote " + path.string());
+  } catch (const InputError& failed) {
+    complain(failed.what());
+  }
+}
+
+std::string Viewer::render_arguments() const {
+  const ShowOptions& show = asked_.show;
+  std::string text = "render " + shell_word(asked_.scene.spec);
+  if (asked_.scene.up != "y") text += " --up=" + asked_.scene.up;
+  text += format(" --size %ux%u --builder %s --radius %u", width_, height_, asked_.builder.name.c_str(),
+                 asked_.builder.radius);
+  if (!asked_.walk.automatic()) text += " " + asked_.walk.said;
+  if (run_.trace.samples != 1) text += format(" --spp %u", run_.trace.samples);
+  if (show.show != Show::color) text += " --show " + std::string(name_of(show.show));
+  if (show.show == Show::steps && show.most_steps) text += format(" --most-steps %u", show.most_steps);
+  if (show.show == Show::clusters) text += format(" --round %u", show.round);
+  if (show.show == Show::boxes) text += format(" --level %u", show.level);
+  return text + " --camera=" + camera_text(camera_numbers_.empty() ? camera_now() : camera_numbers_);
+}
+
+void Viewer::copy_camera() {
+  const std::string text = render_arguments();
+  glfwSetClipboardString(window_.handle(), text.c_str());
+  say(text);
+}
+
+ViewReport Viewer::report() {
+  ViewReport report;
+  report.scene = asked_.scene.spec;
+  report.builder = asked_.builder.name;
+  report.device = device_->properties().name;
+  report.driver = device_->properties().driver;
+  report.width = width_;
+  report.height = height_;
+  report.frame_ms = frame_ms_;
+  report.device_ms = device_ms_;
+  report.work_left = job_.is_under_way();
+  if (opened_) report.triangles = opened_->arrays.triangle_count();
+  if (frames_) {
+    report.walk = name_of(frames_->walk());
+    report.image_hash = image_hash(frames_->picture());
+  }
+  report.validation_messages = window_.take_validation_messages();
+  return report;
+}
+
+}  // namespace coppice

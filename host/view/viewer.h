@@ -1,0 +1,140 @@
+#pragma once
+
+#include <chrono>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "view/camera_control.h"
+#include "view/run_view.h"
+#include "view/scene_job.h"
+#include "view/screen.h"
+#include "view/view_frames.h"
+#include "view/window.h"
+
+namespace coppice {
+
+// What the user has asked for; compared with what is shown.
+struct ViewSettings {
+  SceneOptions scene{};
+  BuilderChoice builder{};
+  WalkChoice walk{};
+  ShowOptions show{};
+  std::uint32_t divide = 1;   // the picture has so many times fewer pixels each way than the window
+  bool rebuild = false;       // for every frame
+  bool draws_always = false;  // also where nothing has changed
+};
+
+// What the panes tell of the last frames.
+struct ViewStatistics {
+  struct Frame {
+    double frame_ms, device_ms;
+    std::vector<KernelGroup> groups;
+    bool built;
+  };
+  static constexpr std::size_t kept = 160;
+  std::deque<Frame> frames;
+  std::vector<std::string> groups;  // of any frame, in order of appearance
+  ViewedFrame last;
+  ViewedTree tree;
+  bool has_tree = false;
+};
+
+// The window with all that the user does to it. Input of GLFW comes by callbacks, and is done at the next
+// frame.
+class Viewer {
+ public:
+  Viewer(const ViewRun& run, const Note& note);
+  ~Viewer();
+  Viewer(const Viewer&) = delete;
+
+  ViewReport run();
+
+  // Input.
+  void on_key(int key, int mods);
+  void on_character(unsigned int character);
+  void on_button(int button, bool down, bool shift);
+  void on_cursor(double x, double y);
+  void on_scroll(double steps);
+  void on_drop(const std::string& path);
+
+ private:
+  struct Request {
+    bool picture = false, camera = false, reset = false;
+  };
+  struct Drag {
+    double x = 0, y = 0;  // in pixels since the last frame
+  };
+
+  // viewer.cpp
+  bool goes_on() const;
+  void turn();
+  void wait_for_events();
+  void take_scene();
+  void start_scene();
+  void remake_frames();
+  void make_frames(std::uint32_t width, std::uint32_t height);
+  void move_camera(double seconds);
+  void move_time(double seconds);
+  void draw_picture();
+  Film film_at_time() const;
+  bool camera_moves() const;
+  std::vector<double> camera_now() const;
+  void note_frame(const ViewedFrame& frame, double ms);
+  void answer_requests();
+  void write_picture();
+  void copy_camera();
+  std::string render_arguments() const;
+  void say(const std::string& line) const;
+  void complain(const std::string& line);
+  ViewReport report();
+  double scene_step() const;
+  double scene_duration() const;
+
+  // panes.cpp
+  void panes();
+  void scene_pane();
+  void view_controls();
+  void time_controls();
+  void cost_pane();
+  void kernel_chart();
+  void tree_controls();
+  void help_window();
+  void messages();
+  void legend();
+  void box_overlay();
+  std::string size_text(std::uint64_t bytes) const;
+
+  ViewRun run_;
+  Note note_;
+  Window window_;
+  Screen screen_;
+  std::optional<CheckedDevice> device_;
+  SceneJob job_;
+  std::unique_ptr<OpenedScene> opened_;
+  std::unique_ptr<ViewFrames> frames_;
+  std::optional<CameraControl> camera_;
+  std::vector<double> camera_numbers_;  // of the picture; given ones until the camera is moved
+  Film film_{};
+
+  ViewSettings asked_, shown_;
+  std::uint32_t width_ = 0, height_ = 0;  // of the picture
+  bool picture_old_ = true;
+  Request request_;
+  Drag turns_, pans_;
+  double zooms_ = 0;
+  int dragging_ = 0;  // 0: nothing, 1: turning, 2: panning
+  double cursor_x_ = 0, cursor_y_ = 0;
+  bool flies_ = false, plays_ = true, panes_ = true, help_ = false;
+  double seconds_ = 0, drawn_seconds_ = 0;  // of the scene
+  std::chrono::steady_clock::time_point last_turn_, last_description_;
+  std::string typed_scene_, complaint_;
+  ViewStatistics statistics_;
+  std::vector<double> frame_ms_, device_ms_;
+  std::uint64_t presented_ = 0;
+  std::vector<Node> boxes_;  // of the tree that is shown as boxes
+};
+
+}  // namespace coppice
