@@ -178,7 +178,7 @@ void Viewer::time_controls() {
     ImGui::SameLine();
     if (!ImGui::Button(direction < 0 ? "<" : ">")) continue;
     plays_ = false;
-    seconds_ = std::max(seconds_ + direction * scene_step(), 0.0);
+    seconds_ = std::max(seconds_ + direction / frames_per_second(), 0.0);
   }
   const auto duration = static_cast<float>(scene_duration());
   auto at = static_cast<float>(std::fmod(seconds_, scene_duration()));

@@ -49,42 +49,6 @@ double size_of(const Aabb& box) {
   return size > 0 && std::isfinite(size) ? size : 1;
 }
 
-// For a shell.
-std::string shell_word(const std::string& word) {
-  if (!word.empty() && word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
-                                              "_-./:,+=") == std::string::npos)
-    return word;
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? "'\\''" : std::string(1, c);
-  return text + "'";
-}
-
-Viewer& viewer_of(GLFWwindow* window) { return *static_cast<Viewer*>(glfwGetWindowUserPointer(window)); }
-
-// Before Dear ImGui's own, which hand on what they get.
-void set_callbacks(GLFWwindow* window) {
-  glfwSetKeyCallback(window, [](GLFWwindow* its, int key, int, int action, int mods) {
-    if (action != GLFW_RELEASE) viewer_of(its).on_key(key, mods);
-  });
-  glfwSetCharCallback(
-      window, [](GLFWwindow* its, unsigned int character) { viewer_of(its).on_character(character); });
-  glfwSetMouseButtonCallback(window, [](GLFWwindow* its, int button, int action, int mods) {
-    viewer_of(its).on_button(button, action == GLFW_PRESS, (mods & GLFW_MOD_SHIFT) != 0);
-  });
-  glfwSetCursorPosCallback(window,
-                           [](GLFWwindow* its, double x, double y) { viewer_of(its).on_cursor(x, y); });
-  glfwSetScrollCallback(window, [](GLFWwindow* its, double, double y) { viewer_of(its).on_scroll(y); });
-  glfwSetDropCallback(window, [](GLFWwindow* its, int count, const char** paths) {
-    if (count > 0) viewer_of(its).on_drop(paths[0]);
-  });
-}
-
-const Window& with_callbacks(const Window& window, Viewer* viewer) {
-  glfwSetWindowUserPointer(window.handle(), viewer);
-  set_callbacks(window.handle());
-  return window;
-}
-
 }  // namespace
 
 Viewer::Viewer(const ViewRun& run, const Note& note)
@@ -95,7 +59,7 @@ Viewer::Viewer(const ViewRun& run, const Note& note)
                .height = static_cast<int>(run.trace.height),
                .select = run.device.select,
                .validate = run.device.validate}),
-      screen_(with_callbacks(window_, this)),
+      screen_(with_input(window_)),
       plays_(!run.paused),
       panes_(run.panes),
       typed_scene_(run.scene.spec) {
@@ -119,90 +83,15 @@ void Viewer::complain(const std::string& line) {
   std::fprintf(stderr, "coppice: %s\n", line.c_str());
 }
 
-double Viewer::scene_step() const {
+double Viewer::frames_per_second() const {
   const Motion* const motion = opened_ ? opened_->scene.motion.get() : nullptr;
-  return 1 / (motion ? motion->frames_per_second : 30);
+  return motion ? motion->frames_per_second : 30;
 }
 
 double Viewer::scene_duration() const {
   const Motion* const motion = opened_ ? opened_->scene.motion.get() : nullptr;
   return motion ? motion->duration_seconds : 1;
 }
-
-// --- Input.
-
-void Viewer::on_key(int key, int) {
-  if (ImGui::GetIO().WantTextInput) return;
-  switch (key) {
-    case GLFW_KEY_ESCAPE:
-      if (help_) {
-        help_ = false;
-      } else {
-        glfwSetWindowShouldClose(window_.handle(), GLFW_TRUE);
-      }
-      break;
-    case GLFW_KEY_SPACE:
-      plays_ = !plays_;
-      break;
-    case GLFW_KEY_PERIOD:
-    case GLFW_KEY_COMMA:
-      plays_ = false;
-      seconds_ = std::max(seconds_ + (key == GLFW_KEY_PERIOD ? 1 : -1) * scene_step(), 0.0);
-      break;
-    case GLFW_KEY_P:
-      request_.picture = true;
-      break;
-    case GLFW_KEY_C:
-      request_.camera = true;
-      break;
-    case GLFW_KEY_R:
-      request_.reset = true;
-      break;
-    case GLFW_KEY_F:
-      flies_ = !flies_;
-      break;
-    case GLFW_KEY_F1:
-      help_ = !help_;
-      break;
-    case GLFW_KEY_TAB:
-      panes_ = !panes_;
-      break;
-    default:
-      if (key >= GLFW_KEY_1 && key <= GLFW_KEY_8) asked_.show.show = static_cast<Show>(key - GLFW_KEY_1);
-      break;
-  }
-}
-
-// Wherever the layout of the keyboard has it.
-void Viewer::on_character(unsigned int character) {
-  if (character == '?' && !ImGui::GetIO().WantTextInput) help_ = !help_;
-}
-
-void Viewer::on_button(int button, bool down, bool shift) {
-  if (!down) {
-    dragging_ = 0;
-  } else if (!ImGui::GetIO().WantCaptureMouse) {
-    dragging_ = button == GLFW_MOUSE_BUTTON_LEFT && !shift ? 1 : 2;
-  }
-}
-
-void Viewer::on_cursor(double x, double y) {
-  Drag* const drag = dragging_ == 1 ? &turns_ : dragging_ == 2 ? &pans_ : nullptr;
-  if (drag) *drag = {drag->x + x - cursor_x_, drag->y + y - cursor_y_};
-  cursor_x_ = x;
-  cursor_y_ = y;
-}
-
-void Viewer::on_scroll(double steps) {
-  if (!ImGui::GetIO().WantCaptureMouse) zooms_ += steps;
-}
-
-void Viewer::on_drop(const std::string& path) {
-  asked_.scene.spec = typed_scene_ = path;
-  asked_.scene.up = "y";
-}
-
-// --- A frame.
 
 bool Viewer::goes_on() const {
   throw_if_interrupted();
@@ -394,7 +283,8 @@ void Viewer::move_camera(double seconds) {
 
 void Viewer::move_time(double seconds) {
   if (!frames_ || !frames_->can_move()) return;
-  if (plays_ && presented_ > 0) seconds_ += run_.frames != 0 ? scene_step() : seconds;
+  if (!plays_ || presented_ == 0) return;
+  seconds_ = run_.frames == 0 ? seconds_ + seconds : static_cast<double>(presented_) / frames_per_second();
 }
 
 void Viewer::draw_picture() {
@@ -451,75 +341,6 @@ void Viewer::note_frame(const ViewedFrame& frame, double ms) {
   statistics_.tree = frames_->describe();
   statistics_.has_tree = true;
   last_description_ = now;
-}
-
-// --- What the user asks for.
-
-void Viewer::answer_requests() {
-  if (request_.picture) write_picture();
-  if (request_.camera) copy_camera();
-  request_.picture = request_.camera = false;
-}
-
-void Viewer::write_picture() {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  fs::path path;
-  for (int number = 1; number < 100000; ++number) {
-    path = run_.pictures + format("-%03d.png", number);
-    if (!fs::exists(path, error)) break;
-  }
-  std::vector<uint> image = frames_->picture();
-  if (asked_.show.show == Show::boxes)
-    draw_box_lines(image, width_, height_, box_lines(frames_->tree(), film_, asked_.show.level, BOXES_SHOWN),
-                   asked_.show.level);
-  try {
-    write_png(path, width_, height_, image);
-    say("wrote " + path.string());
-  } catch (const InputError& failed) {
-    complain(failed.what());
-  }
-}
-
-std::string Viewer::render_arguments() const {
-  const ShowOptions& show = asked_.show;
-  std::string text = "render " + shell_word(asked_.scene.spec);
-  if (asked_.scene.up != "y") text += " --up=" + asked_.scene.up;
-  text += format(" --size %ux%u --builder %s --radius %u", width_, height_, asked_.builder.name.c_str(),
-                 asked_.builder.radius);
-  if (!asked_.walk.automatic()) text += " " + asked_.walk.said;
-  if (run_.trace.samples != 1) text += format(" --spp %u", run_.trace.samples);
-  if (show.show != Show::color) text += " --show " + std::string(name_of(show.show));
-  if (show.show == Show::steps && show.most_steps) text += format(" --most-steps %u", show.most_steps);
-  if (show.show == Show::clusters) text += format(" --round %u", show.round);
-  if (show.show == Show::boxes) text += format(" --level %u", show.level);
-  return text + " --camera=" + camera_text(camera_numbers_.empty() ? camera_now() : camera_numbers_);
-}
-
-void Viewer::copy_camera() {
-  const std::string text = render_arguments();
-  glfwSetClipboardString(window_.handle(), text.c_str());
-  say(text);
-}
-
-ViewReport Viewer::report() {
-  ViewReport report;
-  report.scene = asked_.scene.spec;
-  report.builder = asked_.builder.name;
-  report.device = device_->properties().name;
-  report.driver = device_->properties().driver;
-  report.width = width_;
-  report.height = height_;
-  report.frame_ms = frame_ms_;
-  report.device_ms = device_ms_;
-  report.work_left = job_.is_under_way();
-  if (opened_) report.triangles = opened_->arrays.triangle_count();
-  if (frames_) {
-    report.walk = name_of(frames_->walk());
-    report.image_hash = image_hash(frames_->picture());
-  }
-  report.validation_messages = window_.take_validation_messages();
-  return report;
 }
 
 }  // namespace coppice

@@ -16,6 +16,9 @@
 
 namespace coppice {
 
+// For a shell.
+std::string shell_word(const std::string& word);
+
 // What the user has asked for; compared with what is shown.
 struct ViewSettings {
   SceneOptions scene{};
@@ -68,6 +71,8 @@ class Viewer {
     double x = 0, y = 0;  // in pixels since the last frame
   };
 
+  const Window& with_input(const Window& window);
+
   // viewer.cpp
   bool goes_on() const;
   void turn();
@@ -83,6 +88,8 @@ class Viewer {
   bool camera_moves() const;
   std::vector<double> camera_now() const;
   void note_frame(const ViewedFrame& frame, double ms);
+
+  // viewer_answers.cpp
   void answer_requests();
   void write_picture();
   void copy_camera();
@@ -90,7 +97,7 @@ class Viewer {
   void say(const std::string& line) const;
   void complain(const std::string& line);
   ViewReport report();
-  double scene_step() const;
+  double frames_per_second() const;  // of the scene
   double scene_duration() const;
 
   // panes.cpp
