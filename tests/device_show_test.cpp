@@ -20,7 +20,7 @@
 namespace coppice {
 namespace {
 
-constexpr std::uint32_t width = 67, height = 45, ray_count = width * height;
+constexpr std::uint32_t show_width = 67, show_height = 45, show_rays = show_width * show_height;
 
 class ShowViews : public DeviceTest {};
 
@@ -34,23 +34,23 @@ struct Shown {
   ShowSpan span, seen;
 };
 
-struct Frame {
+struct ShownFrame {
   Show show;
   Walk walk = Walk::binary;
   std::uint32_t samples = 1;
 };
 
 // Build and trace by kernels and twins.
-Shown show_in_lockstep(const Scene& scene, const Frame& frame) {
+Shown show_in_lockstep(const Scene& scene, const ShownFrame& frame) {
   const SceneArrays arrays = scene_arrays(scene);
-  FrameOptions options{.build = BuildOptions{}, .trace = test_trace_options(width, height)};
+  FrameOptions options{.build = BuildOptions{}, .trace = test_trace_options(show_width, show_height)};
   options.trace.walk = frame.walk;
   options.trace.samples = frame.samples;
   options.trace.show = kernel_view(frame.show);
   Layout layout(test_device().properties().max_block_bytes);
   const FramePlan plan = plan_frame(layout, arrays, options);
   LockstepExecutor executor(test_device(), layout);
-  const Film film = make_film(scene, {}, width, height, frame.samples);
+  const Film film = make_film(scene, {}, show_width, show_height, frame.samples);
   upload_frame(executor, plan.tree, plan.trace, arrays, film);
   Shown shown;
   shown.span =
@@ -77,10 +77,10 @@ Shown show_in_lockstep(const Scene& scene, const Frame& frame) {
   return shown;
 }
 
-uint pixel_of(const Shown& shown, std::size_t ray) {
-  const std::size_t strip = ray / (FILM_STRIP * width), in_strip = ray - strip * FILM_STRIP * width;
-  const std::size_t rows = std::min<std::size_t>(FILM_STRIP, height - strip * FILM_STRIP);
-  return shown.image[(strip * FILM_STRIP + in_strip % rows) * width + in_strip / rows];
+uint shown_pixel(const Shown& shown, std::size_t ray) {
+  const std::size_t strip = ray / (FILM_STRIP * show_width), in_strip = ray - strip * FILM_STRIP * show_width;
+  const std::size_t rows = std::min<std::size_t>(FILM_STRIP, show_height - strip * FILM_STRIP);
+  return shown.image[(strip * FILM_STRIP + in_strip % rows) * show_width + in_strip / rows];
 }
 
 int code_of_linear(double linear) {
@@ -89,21 +89,21 @@ int code_of_linear(double linear) {
 }
 
 // Each channel at most one code off.
-void expect_near(uint pixel, const std::array<int, 3>& codes, std::size_t ray) {
+void expect_codes_near(uint pixel, const std::array<int, 3>& codes, std::size_t ray) {
   for (int channel = 0; channel < 3; ++channel)
     EXPECT_NEAR(static_cast<int>(pixel >> (8 * channel) & 255), codes[channel], 1) << "ray " << ray;
 }
 
 // Hits by the independent tracer, through a tree of the independent builder.
-std::vector<Hit> independent_hits(const Scene& scene, std::vector<Ray>& rays) {
+std::vector<Hit> hits_in_double(const Scene& scene, std::vector<Ray>& rays) {
   const SceneArrays arrays = scene_arrays(scene);
-  rays = rays_through(make_film(scene, {}, width, height, 1));
+  rays = rays_through(make_film(scene, {}, show_width, show_height, 1));
   std::vector<Hit> hits(rays.size());
   trace_all(build_ploc(arrays.triangles, {}).nodes, arrays.triangles, rays, hits);
   return hits;
 }
 
-Scene small_scene() { return find_hard_case("sphere")->make(1500, 3); }
+Scene show_scene() { return find_hard_case("sphere")->make(1500, 3); }
 
 TEST_F(ShowViews, EveryViewThroughEveryTreeIsAsByItsTwin) {
   const Scene scene = find_hard_case("nested")->make(1200, 1);
@@ -116,11 +116,11 @@ TEST_F(ShowViews, EveryViewThroughEveryTreeIsAsByItsTwin) {
 
 TEST_F(ShowViews, StepsOfRaysAddUpToWhatIsCounted) {
   for (const Walk walk : {Walk::binary, Walk::wide_packets, Walk::wide_single}) {
-    const Shown shown = show_in_lockstep(small_scene(), {Show::steps, walk});
+    const Shown shown = show_in_lockstep(show_scene(), {Show::steps, walk});
     std::uint64_t sum = 0;
     for (const uint steps : shown.steps) sum += steps;
     EXPECT_EQ(sum, shown.counts.steps) << name_of(walk);
-    EXPECT_GT(sum, ray_count) << name_of(walk);
+    EXPECT_GT(sum, show_rays) << name_of(walk);
     const auto [least, greatest] = std::ranges::minmax_element(shown.steps);
     EXPECT_LT(*least, *greatest);
     EXPECT_EQ(shown.seen.least, static_cast<float>(*least)) << name_of(walk);
@@ -131,28 +131,28 @@ TEST_F(ShowViews, StepsOfRaysAddUpToWhatIsCounted) {
       }
       const double at = std::min(shown.steps[ray] * 256.0 / shown.span.greatest, 255.0);
       const auto code = turbo_code(std::floor(at) / 255);
-      EXPECT_EQ(pixel_of(shown, ray), 0xff000000u | uint{code[2]} << 16 | uint{code[1]} << 8 | code[0]);
+      EXPECT_EQ(shown_pixel(shown, ray), 0xff000000u | uint{code[2]} << 16 | uint{code[1]} << 8 | code[0]);
     }
   }
 }
 
 TEST_F(ShowViews, DepthsAndNormalsAreThoseOfTheIndependentTracer) {
-  const Scene scene = small_scene();
-  const Film film = make_film(scene, {}, width, height, 1);
-  const glm::dvec3 forward = glm::dvec3(film.corner) + glm::dvec3(film.right) * (width / 2.0) +
-                             glm::dvec3(film.down) * (height / 2.0);
+  const Scene scene = show_scene();
+  const Film film = make_film(scene, {}, show_width, show_height, 1);
+  const glm::dvec3 forward = glm::dvec3(film.corner) + glm::dvec3(film.right) * (show_width / 2.0) +
+                             glm::dvec3(film.down) * (show_height / 2.0);
   EXPECT_NEAR(glm::length(forward), 1, 1e-6);
   std::vector<Ray> rays;
-  const std::vector<Hit> hits = independent_hits(scene, rays);
+  const std::vector<Hit> hits = hits_in_double(scene, rays);
   const std::vector<Triangle> triangles = scene_arrays(scene).triangles;
   const Shown depth = show_in_lockstep(scene, {Show::depth}),
               normals = show_in_lockstep(scene, {Show::normals});
   double nearest = 1e30, farthest = 0;
   for (std::size_t ray = 0; ray < hits.size(); ++ray) {
     if (hits[ray].triangle == NO_TRIANGLE) {
-      expect_near(pixel_of(depth, ray),
-                  {code_of_linear(SHOW_NOTHING), code_of_linear(SHOW_NOTHING), code_of_linear(SHOW_NOTHING)},
-                  ray);
+      expect_codes_near(
+          shown_pixel(depth, ray),
+          {code_of_linear(SHOW_NOTHING), code_of_linear(SHOW_NOTHING), code_of_linear(SHOW_NOTHING)}, ray);
       continue;
     }
     const Triangle& triangle = triangles[hits[ray].triangle];
@@ -165,13 +165,13 @@ TEST_F(ShowViews, DepthsAndNormalsAreThoseOfTheIndependentTracer) {
     const double place = (along - depth.span.least) / (depth.span.greatest - depth.span.least) * 256;
     if (std::abs(place - std::round(place)) > 1e-3) {
       const auto code = viridis_code(1 - std::floor(std::min(place, 255.0)) / 255);
-      expect_near(pixel_of(depth, ray), {code[0], code[1], code[2]}, ray);
+      expect_codes_near(shown_pixel(depth, ray), {code[0], code[1], code[2]}, ray);
     }
     const glm::dvec3 normal =
         glm::normalize(glm::cross(glm::dvec3(triangle.b - triangle.a), glm::dvec3(triangle.c - triangle.a)));
     const glm::dvec3 seen = normal * 0.5 + 0.5;
-    expect_near(
-        pixel_of(normals, ray),
+    expect_codes_near(
+        shown_pixel(normals, ray),
         {code_of_linear(seen.x * seen.x), code_of_linear(seen.y * seen.y), code_of_linear(seen.z * seen.z)},
         ray);
   }
@@ -183,13 +183,13 @@ TEST_F(ShowViews, DepthsAndNormalsAreThoseOfTheIndependentTracer) {
 
 // Of the independent tracer's hits: pixels of one triangle have one colour, and other triangles others.
 TEST_F(ShowViews, TrianglesHaveAColourEach) {
-  const Scene scene = small_scene();
+  const Scene scene = show_scene();
   std::vector<Ray> rays;
-  const std::vector<Hit> hits = independent_hits(scene, rays);
+  const std::vector<Hit> hits = hits_in_double(scene, rays);
   const Shown shown = show_in_lockstep(scene, {Show::ids});
   std::map<uint, uint> triangle_of_colour, colour_of_triangle;
   for (std::size_t ray = 0; ray < hits.size(); ++ray) {
-    const uint pixel = pixel_of(shown, ray), triangle = hits[ray].triangle;
+    const uint pixel = shown_pixel(shown, ray), triangle = hits[ray].triangle;
     EXPECT_EQ(colour_of_triangle.try_emplace(triangle, pixel).first->second, pixel);
     triangle_of_colour.try_emplace(pixel, triangle);
   }
@@ -198,7 +198,7 @@ TEST_F(ShowViews, TrianglesHaveAColourEach) {
 }
 
 TEST_F(ShowViews, MortonOrderIsThatOfTheDevicesSort) {
-  const Scene scene = small_scene();
+  const Scene scene = show_scene();
   const std::vector<Triangle> triangles = scene_arrays(scene).triangles;
   const Shown shown = show_in_lockstep(scene, {Show::morton});
   EXPECT_EQ(shown_values({.show = Show::morton}, triangles, 30, {}),
@@ -207,7 +207,7 @@ TEST_F(ShowViews, MortonOrderIsThatOfTheDevicesSort) {
 
 // After each round as many clusters as the build counted, each a union of some of the round before.
 TEST_F(ShowViews, ClustersGrowFromTrianglesIntoTheTree) {
-  const Scene scene = find_hard_case("scatter") ? find_hard_case("scatter")->make(3000, 1) : small_scene();
+  const Scene scene = find_hard_case("scatter") ? find_hard_case("scatter")->make(3000, 1) : show_scene();
   const Shown shown = show_in_lockstep(scene, {Show::clusters});
   const auto count = static_cast<std::uint32_t>(scene.indices.size());
   std::vector<uint> before(count);

@@ -27,6 +27,11 @@ class ViewCommand : public Command {
         ->check(CLI::Range(1u, 1'000'000u));
     app.add_flag("--paused", run_.paused, "a moving scene stands still at first");
     app.add_flag("--rebuild", run_.rebuild, "build the tree anew for every frame");
+    app.add_option_function<std::string>(
+           "--update", [this](const std::string& given) { run_.refits = given == "refit"; },
+           "where triangles have moved: a new tree, or new boxes for the tree")
+        ->check(CLI::IsMember({"rebuild", "refit"}))
+        ->default_str("rebuild");
     app.add_flag("--no-panes", no_panes_, "without panes at first");
     app.add_option("--pictures", run_.pictures, "what the names of written pictures begin with")
         ->type_name("PREFIX")

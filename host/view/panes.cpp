@@ -1,6 +1,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
 #include <algorithm>
@@ -24,6 +25,7 @@ constexpr const char* help_text[][2] = {
     {"W A S D, E Q", "fly forward, left, backward, right, up, down; shift: faster"},
     {"F", "fly or orbit"},
     {"R", "the camera of the beginning"},
+    {"B", "build the tree anew once"},
     {"1 to 8", "color, steps, normals, depth, ids, morton, clusters, boxes"},
     {"space", "play or pause"},
     {". ,", "a step forward, back"},
@@ -111,7 +113,14 @@ void Viewer::scene_pane() {
   ImGui::SetNextWindowSize({pane_width, 0});
   ImGui::Begin("scene", nullptr, fixed_pane);
   ImGui::PushItemWidth(190);
-  const bool entered = ImGui::InputText("scene", &typed_scene_, ImGuiInputTextFlags_EnterReturnsTrue);
+  // Dear ImGui does not see a key that goes down and up between two frames.
+  bool entered = ImGui::InputText("scene", &typed_scene_,
+                                  ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+  if (ImGui::IsItemActive() && request_.enter) {
+    entered = true;
+    ImGui::ClearActiveID();
+  }
+  request_.enter = false;
   if (entered && !typed_scene_.empty()) asked_.scene.spec = typed_scene_;
   if (ImGui::BeginCombo("built in", "choose", ImGuiComboFlags_HeightLarge)) {
     for (const SceneListing& listing : list_scenes()) {
@@ -129,9 +138,13 @@ void Viewer::scene_pane() {
   std::string walk = name_of_walk(asked_.walk);
   if (choose("tracer", walk, {"auto", "binary", "wide", "wide-packets", "wide-single"}))
     asked_.walk = walk_choice_of(walk);
-  std::string update = asked_.rebuild ? "rebuild every frame" : "rebuild what moved";
-  if (choose("update", update, {"rebuild what moved", "rebuild every frame"}))
-    asked_.rebuild = update == "rebuild every frame";
+  static const std::vector<std::string> updates = {"rebuild what moved", "refit what moved",
+                                                   "rebuild every frame"};
+  std::string update = updates[asked_.rebuild ? 2 : asked_.refits ? 1 : 0];
+  if (choose("update", update, updates)) {
+    asked_.rebuild = update == updates[2];
+    asked_.refits = update == updates[1];
+  }
   std::string part = format("1/%u", asked_.divide);
   if (choose("pixels", part, {"1/1", "1/2", "1/4"}))
     asked_.divide = static_cast<std::uint32_t>(part.back() - '0');
@@ -273,9 +286,10 @@ void Viewer::tree_controls() {
   const ViewedTree& tree = statistics_.tree;
   if (!ImGui::CollapsingHeader("tree", ImGuiTreeNodeFlags_DefaultOpen)) return;
   ImGui::Text("SAH cost %.2f, depth %u", tree.sah, tree.depth);
+  if (statistics_.last.refitted) ImGui::TextDisabled("refitted; B builds it anew");
   ImGui::TextDisabled("%llu nodes, %llu leaves", static_cast<unsigned long long>(tree.nodes),
                       static_cast<unsigned long long>(tree.leaves));
-  if (opened_->built_by) ImGui::TextDisabled("built on the host in %.1f ms", opened_->build_ms);
+  if (!opened_->builder.on_device()) ImGui::TextDisabled("built on the host in %.1f ms", opened_->build_ms);
   if (tree.clusters.size() < 2) return;
   std::vector<float> logs;
   for (const std::uint32_t clusters : tree.clusters) logs.push_back(std::log2(static_cast<float>(clusters)));

@@ -24,6 +24,7 @@ struct ViewRun {
   ShowOptions show{};
   bool paused = false;       // a moving scene stands still at first
   bool rebuild = false;      // the tree is made anew for every frame
+  bool refits = false;       // where triangles have moved its boxes are made anew, not the tree
   bool panes = true;         // they are shown
   std::uint32_t frames = 0;  // ends after so many, one step of the scene each; 0: when it is closed
   std::string pictures = "coppice-view";  // what the names of pictures begin with

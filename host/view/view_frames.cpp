@@ -8,6 +8,7 @@
 #include "pipeline/bounded_submits.h"
 #include "render/scene_room.h"
 #include "stages/errors.h"
+#include "stages/stages.h"
 
 namespace coppice {
 
@@ -18,7 +19,7 @@ std::string group_of(std::string_view stage) {
   constexpr std::pair<std::string_view, const char*> prefixes[] = {
       {"vertex_", "vertices"}, {"gather_", "bounds"}, {"primitive_", "bounds"}, {"sort_", "sort"},
       {"ploc_", "PLOC"},       {"hploc_", "H-PLOC"},  {"wide_", "wide"},        {"trace_", "trace"},
-      {"morton_", "Morton"},   {"camera_", "camera"}};
+      {"morton_", "Morton"},   {"refit_", "refit"},   {"camera_", "camera"}};
   for (const auto& [prefix, name] : prefixes) {
     if (stage.starts_with(prefix)) return name;
   }
@@ -55,6 +56,7 @@ std::vector<std::string> mark_groups(std::vector<Step>& steps) {
 OpenedScene open_for_view(const SceneOptions& options, const BuilderChoice& builder) {
   OpenedScene opened;
   opened.options = options;
+  opened.builder = builder;
   check_room(options.spec, DeviceRoom{}, [](const std::string&) {});
   opened.scene = open_scene(options.spec, options.up);
   opened.arrays = scene_arrays(opened.scene);
@@ -68,7 +70,6 @@ OpenedScene open_for_view(const SceneOptions& options, const BuilderChoice& buil
   check_height(opened.bvh);
   opened.build_ms =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  opened.built_by = builder;
   return opened;
 }
 
@@ -86,7 +87,10 @@ FramePlan ViewFrames::plan_all(ViewFrames& frames, CheckedDevice& device) {
     options.node_count = opened.bvh.nodes.size();
     if (opened.bvh.nodes.empty()) options.trace.walk = Walk::brute_force;
   }
-  return plan_frame(frames.layout_, opened.arrays, options);
+  FramePlan plan = plan_frame(frames.layout_, opened.arrays, options);
+  if (frames.options_.refits && plan.build && opened.scene.motion)
+    frames.refit_ = plan_refit(frames.layout_, plan.tree, nullptr, options.trace.max_turns);
+  return plan;
 }
 
 ViewFrames::ViewFrames(CheckedDevice& device, const OpenedScene& opened, const ViewOptions& options)
@@ -112,12 +116,39 @@ void ViewFrames::record() {
     append_vertices(tree, vertices_, at_, motion_);
     append_build(tree, *plan_.build, {triangles_of(tree, vertices_), {}});
   }
+  if (refit_) append_refit_order(tree, plan_.tree, *refit_);
   append_frame_wide(tree, plan_);
   append_trace(trace, plan_.tree, plan_.trace);
   tree_groups_ = mark_groups(tree.steps());
   trace_groups_ = mark_groups(trace.steps());
   if (!tree.steps().empty()) tree_recorder_.emplace(executor_.record(tree.steps()));
   trace_recorder_.emplace(executor_.record(trace.steps()));
+  if (refit_) record_refit();
+}
+
+// From the vertices of another time to boxes of the same tree.
+void ViewFrames::record_refit() {
+  Chain chain = executor_.chain();
+  append_vertices(chain, vertices_, at_, motion_);
+  const VertexTriangles from = triangles_of(chain, vertices_);
+  const std::uint32_t count = opened_.arrays.triangle_count();
+  chain.run(stages::gather_triangles,
+            {from.vertices,
+             from.indices,
+             from.transform,
+             chain.at(plan_.tree.triangles),
+             {},
+             count,
+             from.vertex_count,
+             from.vertex_stride,
+             from.first_vertex,
+             from.index_bytes,
+             0},
+            groups_of(count, GATHER_TRIANGLES_TILE));
+  append_refit(chain, plan_.tree, *refit_);
+  if (plan_.wide) append_wide_boxes(chain, plan_.tree, *plan_.wide);
+  refit_groups_ = mark_groups(chain.steps());
+  refit_recorder_.emplace(executor_.record(chain.steps()));
 }
 
 void ViewFrames::submit(Recorder& recorder, const std::vector<std::string>& names, ViewedFrame& frame) {
@@ -165,16 +196,25 @@ void ViewFrames::upload_values() {
   executor_.upload(slot, std::span<const uint>(values));
 }
 
+// A triangle that has appeared needs a tree with a leaf for it.
+void ViewFrames::move_tree(double seconds, bool rebuild, ViewedFrame& frame) {
+  const bool moved = can_move() && seconds_ != seconds;
+  frame.built = !seconds_ || (moved && !refit_) || (rebuild && plan_.build);
+  if (!frame.built && !moved) return;
+  if (plan_.build) upload_step(executor_, at_, motion_step(motion_, pose_at(motion_, seconds), seconds));
+  if (!frame.built) {
+    submit(*refit_recorder_, refit_groups_, frame);
+    frame.refitted = executor_.read(refit_->state)[0].appeared_count == 0;
+    frame.built = !frame.refitted;
+  }
+  if (frame.built && tree_recorder_) submit(*tree_recorder_, tree_groups_, frame);
+  seconds_ = seconds;
+  values_old_ = true;
+}
+
 ViewedFrame ViewFrames::draw(const Film& film, double seconds, bool rebuild) {
   ViewedFrame frame;
-  const bool moved = can_move() && seconds_ != seconds;
-  frame.built = !seconds_ || moved || (rebuild && plan_.build);
-  if (frame.built) {
-    if (plan_.build) upload_step(executor_, at_, motion_step(motion_, pose_at(motion_, seconds), seconds));
-    if (tree_recorder_) submit(*tree_recorder_, tree_groups_, frame);
-    seconds_ = seconds;
-    values_old_ = true;
-  }
+  move_tree(seconds, rebuild, frame);
   if (values_old_) upload_values();
   executor_.upload(plan_.trace.film, std::span<const Film>(&film, 1));
   upload_show(executor_, plan_.trace.show, options_.show.show, span(film));

@@ -7,6 +7,7 @@
 
 #include "measure/builder_choice.h"
 #include "pipeline/checked_device.h"
+#include "pipeline/refit.h"
 #include "render/frame.h"
 #include "render/moving_vertices.h"
 #include "render/show.h"
@@ -20,7 +21,7 @@ struct OpenedScene {
   Scene scene;
   SceneArrays arrays;
   Aabb box;
-  std::optional<BuilderChoice> built_by{};  // a builder of the host
+  BuilderChoice builder{};  // with one of the host:
   Bvh bvh{};
   double build_ms = 0;  // that it took
 };
@@ -32,6 +33,7 @@ struct ViewOptions {
   BuilderChoice builder{};
   TraceOptions trace{};  // and of what size; the walk is chosen
   ShowOptions show{};
+  bool refits = false;  // where triangles have moved the boxes of the tree are made anew, not the tree
 };
 
 // Device time of kernels that belong together, in the order in which they run.
@@ -42,6 +44,7 @@ struct KernelGroup {
 
 struct ViewedFrame {
   bool built = false;               // the tree was made anew
+  bool refitted = false;            // or only its boxes
   std::vector<KernelGroup> groups;  // empty on a device without timestamps
   double device_ms = 0, wall_ms = 0;
   TraceCounts counts;
@@ -86,6 +89,8 @@ class ViewFrames {
   const std::vector<SlotListing>& slots() const { return layout_.slots(); }
 
  private:
+  void record_refit();
+  void move_tree(double seconds, bool rebuild, ViewedFrame& frame);
   static FramePlan plan_all(ViewFrames& frames, CheckedDevice& device);
   void record();
   void upload_values();
@@ -100,10 +105,12 @@ class ViewFrames {
   MotionSlots at_;
   FramePlan plan_;
   GpuExecutor executor_;
-  std::optional<Recorder> tree_recorder_, trace_recorder_;
-  std::vector<std::string> tree_groups_, trace_groups_;  // one a mark, and one for what is behind the last
-  std::optional<double> seconds_;                        // of the tree
-  bool values_old_ = true;                               // what is shown of primitives
+  std::optional<RefitPlan> refit_;
+  std::optional<Recorder> tree_recorder_, refit_recorder_, trace_recorder_;
+  std::vector<std::string> tree_groups_, refit_groups_,
+      trace_groups_;               // one a mark, and one for what is behind the last
+  std::optional<double> seconds_;  // of the tree
+  bool values_old_ = true;         // what is shown of primitives
 };
 
 }  // namespace coppice

@@ -33,7 +33,8 @@ double seconds_between(ViewClock::time_point from, ViewClock::time_point to) {
 
 bool same_tree(const ViewSettings& a, const ViewSettings& b) {
   return a.builder.name == b.builder.name && a.builder.radius == b.builder.radius &&
-         a.builder.morton_bits == b.builder.morton_bits && a.builder.leaf_size == b.builder.leaf_size;
+         a.builder.morton_bits == b.builder.morton_bits && a.builder.leaf_size == b.builder.leaf_size &&
+         a.refits == b.refits;
 }
 
 bool same_scene(const ViewSettings& a, const ViewSettings& b) {
@@ -65,6 +66,7 @@ Viewer::Viewer(const ViewRun& run, const Note& note)
       typed_scene_(run.scene.spec) {
   asked_ = {.scene = run.scene, .builder = run.builder, .walk = run.choices.walk, .show = run.show};
   asked_.rebuild = run.rebuild;
+  asked_.refits = run.refits;
   asked_.draws_always = run.frames != 0;
   shown_ = asked_;
   camera_numbers_ = run.camera;
@@ -168,7 +170,7 @@ void Viewer::take_scene() {
     if (!opened_) throw InputError(result.complaint);
     complain(result.complaint);
     asked_.scene = shown_.scene = opened_->options;
-    if (opened_->built_by) asked_.builder = shown_.builder = *opened_->built_by;
+    asked_.builder = shown_.builder = opened_->builder;
   }
   if (!result.opened) return;
   const bool is_new = !opened_ || opened_->options.spec != result.opened->options.spec;
@@ -202,7 +204,7 @@ void Viewer::remake_frames() {
     shown_ = asked_;
     return;
   }
-  if (job_.is_under_way() && frames_ && !same_tree(asked_, shown_)) return;
+  if (job_.is_under_way() && !asked_.builder.on_device()) return;  // its tree is yet to come
   const bool had_frames = frames_ != nullptr;
   try {
     make_frames(width, height);
@@ -220,7 +222,8 @@ void Viewer::remake_frames() {
 void Viewer::make_frames(std::uint32_t width, std::uint32_t height) {
   screen_.wait();
   frames_.reset();
-  ViewOptions options{.builder = asked_.builder, .trace = run_.trace, .show = asked_.show};
+  ViewOptions options{
+      .builder = asked_.builder, .trace = run_.trace, .show = asked_.show, .refits = asked_.refits};
   options.trace.width = width;
   options.trace.height = height;
   device_->set_walk(asked_.walk);
@@ -292,9 +295,10 @@ void Viewer::draw_picture() {
   const bool moves = (plays_ && frames_->can_move()) || asked_.rebuild || asked_.draws_always;
   static_assert(std::is_trivially_copyable_v<Film>);
   Film film = film_at_time();
-  if (!moves && !picture_old_ && seconds_ == drawn_seconds_) return;
+  if (!moves && !picture_old_ && !request_.rebuild && seconds_ == drawn_seconds_) return;
   const auto start = ViewClock::now();
-  const ViewedFrame frame = frames_->draw(film, seconds_, asked_.rebuild);
+  const ViewedFrame frame = frames_->draw(film, seconds_, asked_.rebuild || request_.rebuild);
+  request_.rebuild = false;
   film_ = film;
   drawn_seconds_ = seconds_;
   picture_old_ = false;
@@ -334,9 +338,11 @@ void Viewer::note_frame(const ViewedFrame& frame, double ms) {
   // Of a tree that changes a few times a second, as it has to be read from the device.
   const auto now = ViewClock::now();
   const bool shows_boxes = asked_.show.show == Show::boxes;
-  if (shows_boxes && (frame.built || boxes_.empty())) boxes_ = frames_->tree();
+  if (shows_boxes && (frame.built || frame.refitted || boxes_.empty())) boxes_ = frames_->tree();
   if (!shows_boxes) boxes_.clear();
-  if (statistics_.has_tree && (!frame.built || seconds_between(last_description_, now) < 0.5)) return;
+  if (statistics_.has_tree &&
+      (!(frame.built || frame.refitted) || seconds_between(last_description_, now) < 0.5))
+    return;
   if (!panes_ && statistics_.has_tree) return;
   statistics_.tree = frames_->describe();
   statistics_.has_tree = true;

@@ -26,7 +26,8 @@ struct ViewSettings {
   WalkChoice walk{};
   ShowOptions show{};
   std::uint32_t divide = 1;   // the picture has so many times fewer pixels each way than the window
-  bool rebuild = false;       // for every frame
+  bool rebuild = false;       // the tree, for every frame
+  bool refits = false;        // where triangles have moved
   bool draws_always = false;  // also where nothing has changed
 };
 
@@ -65,7 +66,7 @@ class Viewer {
 
  private:
   struct Request {
-    bool picture = false, camera = false, reset = false;
+    bool picture = false, camera = false, reset = false, rebuild = false, enter = false;
   };
   struct Drag {
     double x = 0, y = 0;  // in pixels since the last frame

@@ -39,6 +39,7 @@ const Window& Viewer::with_input(const Window& window) {
 }
 
 void Viewer::on_key(int key, int) {
+  if (key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER) request_.enter = true;
   if (ImGui::GetIO().WantTextInput) return;
   switch (key) {
     case GLFW_KEY_ESCAPE:
@@ -64,6 +65,9 @@ void Viewer::on_key(int key, int) {
       break;
     case GLFW_KEY_R:
       request_.reset = true;
+      break;
+    case GLFW_KEY_B:
+      request_.rebuild = true;
       break;
     case GLFW_KEY_F:
       flies_ = !flies_;
