@@ -50,7 +50,7 @@ std::uint64_t count_groups(std::span<const uint> groups, std::span<const Node> n
     if (node.height == 0) words.push_back(groups[node.child]);
   }
   std::ranges::sort(words);
-  return static_cast<std::uint64_t>(std::ranges::unique(words).begin() - words.begin());
+  return static_cast<std::uint64_t>(std::unique(words.begin(), words.end()) - words.begin());
 }
 
 Json to_json(const ShownReport& shown, const Scene& scene) {

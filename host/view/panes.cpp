@@ -139,11 +139,12 @@ void Viewer::scene_pane() {
   if (choose("tracer", walk, {"auto", "binary", "wide", "wide-packets", "wide-single"}))
     asked_.walk = walk_choice_of(walk);
   static const std::vector<std::string> updates = {"rebuild what moved", "refit what moved",
-                                                   "rebuild every frame"};
-  std::string update = updates[asked_.rebuild ? 2 : asked_.refits ? 1 : 0];
+                                                   "what costs less", "rebuild every frame"};
+  std::string update = updates[asked_.rebuild ? 3 : static_cast<std::size_t>(asked_.update)];
   if (choose("update", update, updates)) {
-    asked_.rebuild = update == updates[2];
-    asked_.refits = update == updates[1];
+    const auto chosen = std::ranges::find(updates, update) - updates.begin();
+    asked_.rebuild = chosen == 3;
+    asked_.update = chosen == 3 ? Update::rebuild : static_cast<Update>(chosen);
   }
   std::string part = format("1/%u", asked_.divide);
   if (choose("pixels", part, {"1/1", "1/2", "1/4"}))

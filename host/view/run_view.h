@@ -9,6 +9,7 @@
 #include "pipeline/checked_device.h"
 #include "pipeline/trace_plan.h"
 #include "render/show.h"
+#include "render/update_chooser.h"
 #include "scene/scene_source.h"
 
 namespace coppice {
@@ -22,9 +23,9 @@ struct ViewRun {
   TraceOptions trace{};          // its size is the window's
   std::vector<double> camera{};  // see given_view; empty: the scene's
   ShowOptions show{};
-  bool paused = false;       // a moving scene stands still at first
-  bool rebuild = false;      // the tree is made anew for every frame
-  bool refits = false;       // where triangles have moved its boxes are made anew, not the tree
+  bool paused = false;   // a moving scene stands still at first
+  bool rebuild = false;  // the tree is made anew for every frame
+  Update update = Update::rebuild;
   bool panes = true;         // they are shown
   std::uint32_t frames = 0;  // ends after so many, one step of the scene each; 0: when it is closed
   std::string pictures = "coppice-view";  // what the names of pictures begin with

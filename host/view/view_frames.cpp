@@ -8,7 +8,6 @@
 #include "pipeline/bounded_submits.h"
 #include "render/scene_room.h"
 #include "stages/errors.h"
-#include "stages/stages.h"
 
 namespace coppice {
 
@@ -88,7 +87,7 @@ FramePlan ViewFrames::plan_all(ViewFrames& frames, CheckedDevice& device) {
     if (opened.bvh.nodes.empty()) options.trace.walk = Walk::brute_force;
   }
   FramePlan plan = plan_frame(frames.layout_, opened.arrays, options);
-  if (frames.options_.refits && plan.build && opened.scene.motion)
+  if (frames.options_.update != Update::rebuild && plan.build && opened.scene.motion)
     frames.refit_ = plan_refit(frames.layout_, plan.tree, nullptr, options.trace.max_turns);
   return plan;
 }
@@ -100,7 +99,8 @@ ViewFrames::ViewFrames(CheckedDevice& device, const OpenedScene& opened, const V
       motion_(motion_of(opened.scene)),
       layout_(device.properties().max_block_bytes),
       plan_(plan_all(*this, device)),
-      executor_(device.device(), layout_) {
+      executor_(device.device(), layout_),
+      chooser_(options.update) {
   upload_frame(executor_, plan_.tree, plan_.trace, opened.arrays, Film{});
   if (plan_.build) {
     upload_vertices(executor_, vertices_, motion_, std::span<const uvec3>(opened.scene.indices));
@@ -130,21 +130,7 @@ void ViewFrames::record() {
 void ViewFrames::record_refit() {
   Chain chain = executor_.chain();
   append_vertices(chain, vertices_, at_, motion_);
-  const VertexTriangles from = triangles_of(chain, vertices_);
-  const std::uint32_t count = opened_.arrays.triangle_count();
-  chain.run(stages::gather_triangles,
-            {from.vertices,
-             from.indices,
-             from.transform,
-             chain.at(plan_.tree.triangles),
-             {},
-             count,
-             from.vertex_count,
-             from.vertex_stride,
-             from.first_vertex,
-             from.index_bytes,
-             0},
-            groups_of(count, GATHER_TRIANGLES_TILE));
+  append_triangles(chain, plan_.tree.triangles, triangles_of(chain, vertices_));
   append_refit(chain, plan_.tree, *refit_);
   if (plan_.wide) append_wide_boxes(chain, plan_.tree, *plan_.wide);
   refit_groups_ = mark_groups(chain.steps());
@@ -196,25 +182,35 @@ void ViewFrames::upload_values() {
   executor_.upload(slot, std::span<const uint>(values));
 }
 
-// A triangle that has appeared needs a tree with a leaf for it.
-void ViewFrames::move_tree(double seconds, bool rebuild, ViewedFrame& frame) {
-  const bool moved = can_move() && seconds_ != seconds;
-  frame.built = !seconds_ || (moved && !refit_) || (rebuild && plan_.build);
-  if (!frame.built && !moved) return;
-  if (plan_.build) upload_step(executor_, at_, motion_step(motion_, pose_at(motion_, seconds), seconds));
-  if (!frame.built) {
-    submit(*refit_recorder_, refit_groups_, frame);
-    frame.refitted = executor_.read(refit_->state)[0].appeared_count == 0;
-    frame.built = !frame.refitted;
+// False where a refit was in vain: a triangle that has appeared needs a tree with a leaf for it.
+bool ViewFrames::make_tree(bool rebuilds, ViewedFrame& frame) {
+  frame.built = rebuilds;
+  if (rebuilds) {
+    if (tree_recorder_) submit(*tree_recorder_, tree_groups_, frame);
+    return true;
   }
-  if (frame.built && tree_recorder_) submit(*tree_recorder_, tree_groups_, frame);
+  submit(*refit_recorder_, refit_groups_, frame);
+  frame.refitted = executor_.read(refit_->state)[0].appeared_count == 0;
+  return frame.refitted;
+}
+
+bool ViewFrames::move_tree(double seconds, bool rebuild, ViewedFrame& frame) {
+  const bool moved = can_move() && seconds_ != seconds, asked = rebuild && plan_.build;
+  if (seconds_ && !moved && !asked) return true;
+  if (plan_.build) upload_step(executor_, at_, motion_step(motion_, pose_at(motion_, seconds), seconds));
+  if (asked) chooser_ = UpdateChooser(options_.update);  // which begins with a build
+  const bool refits = chooser_.next_refits() && refit_;
+  const bool made = make_tree(!refits, frame);
+  if (!made) make_tree(true, frame);
   seconds_ = seconds;
   values_old_ = true;
+  return made;
 }
 
 ViewedFrame ViewFrames::draw(const Film& film, double seconds, bool rebuild) {
   ViewedFrame frame;
-  move_tree(seconds, rebuild, frame);
+  const bool in_vain = !move_tree(seconds, rebuild, frame);
+  const double update_ms = frame.device_ms;
   if (values_old_) upload_values();
   executor_.upload(plan_.trace.film, std::span<const Film>(&film, 1));
   upload_show(executor_, plan_.trace.show, options_.show.show, span(film));
@@ -223,6 +219,8 @@ ViewedFrame ViewFrames::draw(const Film& film, double seconds, bool rebuild) {
   if (const std::string errors = describe_error_word(state.error_word); !errors.empty())
     throw DeviceError("the frame at second " + std::to_string(seconds) + ": " + errors);
   frame.counts = counts_of(executor_.read(plan_.trace.counters)[0]);
+  if (frame.built || frame.refitted)
+    chooser_.note({frame.built, in_vain, update_ms, frame.device_ms - update_ms, frame.counts.steps});
   if (plan_.trace.show.range.count > 0)
     frame.seen = seen_in(executor_.read(plan_.trace.show.range)[0], options_.show.show);
   return frame;

@@ -11,6 +11,8 @@
 #include "render/frame.h"
 #include "render/moving_vertices.h"
 #include "render/show.h"
+#include "render/update_chooser.h"
+#include "scene/scene_source.h"
 #include "stages/gpu_executor.h"
 
 namespace coppice {
@@ -33,7 +35,7 @@ struct ViewOptions {
   BuilderChoice builder{};
   TraceOptions trace{};  // and of what size; the walk is chosen
   ShowOptions show{};
-  bool refits = false;  // where triangles have moved the boxes of the tree are made anew, not the tree
+  Update update = Update::rebuild;  // of the tree, where triangles have moved
 };
 
 // Device time of kernels that belong together, in the order in which they run.
@@ -90,7 +92,9 @@ class ViewFrames {
 
  private:
   void record_refit();
-  void move_tree(double seconds, bool rebuild, ViewedFrame& frame);
+  // False where it was refitted in vain, and then built.
+  bool move_tree(double seconds, bool rebuild, ViewedFrame& frame);
+  bool make_tree(bool rebuilds, ViewedFrame& frame);
   static FramePlan plan_all(ViewFrames& frames, CheckedDevice& device);
   void record();
   void upload_values();
@@ -106,6 +110,7 @@ class ViewFrames {
   FramePlan plan_;
   GpuExecutor executor_;
   std::optional<RefitPlan> refit_;
+  UpdateChooser chooser_;
   std::optional<Recorder> tree_recorder_, refit_recorder_, trace_recorder_;
   std::vector<std::string> tree_groups_, refit_groups_,
       trace_groups_;               // one a mark, and one for what is behind the last

@@ -34,7 +34,7 @@ double seconds_between(ViewClock::time_point from, ViewClock::time_point to) {
 bool same_tree(const ViewSettings& a, const ViewSettings& b) {
   return a.builder.name == b.builder.name && a.builder.radius == b.builder.radius &&
          a.builder.morton_bits == b.builder.morton_bits && a.builder.leaf_size == b.builder.leaf_size &&
-         a.refits == b.refits;
+         a.update == b.update;
 }
 
 bool same_scene(const ViewSettings& a, const ViewSettings& b) {
@@ -66,7 +66,7 @@ Viewer::Viewer(const ViewRun& run, const Note& note)
       typed_scene_(run.scene.spec) {
   asked_ = {.scene = run.scene, .builder = run.builder, .walk = run.choices.walk, .show = run.show};
   asked_.rebuild = run.rebuild;
-  asked_.refits = run.refits;
+  asked_.update = run.update;
   asked_.draws_always = run.frames != 0;
   shown_ = asked_;
   camera_numbers_ = run.camera;
@@ -223,7 +223,7 @@ void Viewer::make_frames(std::uint32_t width, std::uint32_t height) {
   screen_.wait();
   frames_.reset();
   ViewOptions options{
-      .builder = asked_.builder, .trace = run_.trace, .show = asked_.show, .refits = asked_.refits};
+      .builder = asked_.builder, .trace = run_.trace, .show = asked_.show, .update = asked_.update};
   options.trace.width = width;
   options.trace.height = height;
   device_->set_walk(asked_.walk);

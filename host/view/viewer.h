@@ -25,10 +25,10 @@ struct ViewSettings {
   BuilderChoice builder{};
   WalkChoice walk{};
   ShowOptions show{};
-  std::uint32_t divide = 1;   // the picture has so many times fewer pixels each way than the window
-  bool rebuild = false;       // the tree, for every frame
-  bool refits = false;        // where triangles have moved
-  bool draws_always = false;  // also where nothing has changed
+  std::uint32_t divide = 1;         // the picture has so many times fewer pixels each way than the window
+  bool rebuild = false;             // the tree, for every frame
+  Update update = Update::rebuild;  // where triangles have moved
+  bool draws_always = false;        // also where nothing has changed
 };
 
 // What the panes tell of the last frames.
