@@ -1,25 +1,17 @@
+#define GLFW_INCLUDE_NONE
 #include "view/viewer.h"
 
-#define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
-#include <imgui.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <filesystem>
-#include <glm/geometric.hpp>
 
-#include "analysis/tree_hash.h"
 #include "gpu/device.h"
 #include "measure/table.h"
 #include "pipeline/interruption.h"
 #include "pipeline/verdicts.h"
-#include "render/box_lines.h"
 #include "scene/input_error.h"
-#include "scene/motion.h"
 #include "scene/printable.h"
-#include "scene/write_png.h"
 
 namespace coppice {
 
@@ -43,11 +35,6 @@ bool same_scene(const ViewSettings& a, const ViewSettings& b) {
 
 bool same_show(const ShowOptions& a, const ShowOptions& b) {
   return a.show == b.show && a.most_steps == b.most_steps && a.round == b.round && a.level == b.level;
-}
-
-double size_of(const Aabb& box) {
-  const double size = glm::length(glm::dvec3(box.box_max) - glm::dvec3(box.box_min));
-  return size > 0 && std::isfinite(size) ? size : 1;
 }
 
 }  // namespace
@@ -83,16 +70,6 @@ void Viewer::say(const std::string& line) const {
 void Viewer::complain(const std::string& line) {
   complaint_ = line;
   std::fprintf(stderr, "coppice: %s\n", line.c_str());
-}
-
-double Viewer::frames_per_second() const {
-  const Motion* const motion = opened_ ? opened_->scene.motion.get() : nullptr;
-  return motion ? motion->frames_per_second : 30;
-}
-
-double Viewer::scene_duration() const {
-  const Motion* const motion = opened_ ? opened_->scene.motion.get() : nullptr;
-  return motion ? motion->duration_seconds : 1;
 }
 
 bool Viewer::goes_on() const {
@@ -241,55 +218,6 @@ void Viewer::make_frames(std::uint32_t width, std::uint32_t height) {
   statistics_ = {};
 }
 
-void Viewer::move_camera(double seconds) {
-  if (!frames_) return;
-  const auto held = [&](int key) {
-    return !ImGui::GetIO().WantTextInput && glfwGetKey(window_.handle(), key) == GLFW_PRESS ? 1 : 0;
-  };
-  const double speed = 0.25 * seconds * (held(GLFW_KEY_LEFT_SHIFT) ? 4 : 1);
-  const double forward = speed * (held(GLFW_KEY_W) - held(GLFW_KEY_S));
-  const double right = speed * (held(GLFW_KEY_D) - held(GLFW_KEY_A));
-  const double up = speed * (held(GLFW_KEY_E) - held(GLFW_KEY_Q));
-  const bool moves = forward != 0 || right != 0 || up != 0 || turns_.x != 0 || turns_.y != 0 ||
-                     pans_.x != 0 || pans_.y != 0 || zooms_ != 0;
-  if (request_.reset) {
-    camera_.reset();
-    camera_numbers_.clear();
-    if (!camera_moves()) camera_numbers_ = camera_now();
-    request_.reset = false;
-    picture_old_ = true;
-  }
-  if (moves && !camera_) {
-    if (camera_numbers_.empty()) camera_numbers_ = camera_now();
-    camera_.emplace(given_view(opened_->scene, camera_numbers_), size_of(opened_->box));
-  }
-  if (moves) {
-    const double pixels = std::max(static_cast<double>(window_.framebuffer().height), 1.0);
-    if (flies_) {
-      camera_->look(turns_.x / pixels, turns_.y / pixels);
-    } else {
-      camera_->orbit(turns_.x / pixels, turns_.y / pixels);
-    }
-    camera_->pan(pans_.x / pixels, pans_.y / pixels);
-    if (flies_) {
-      camera_->fly(0.02 * zooms_, 0, 0);
-    } else {
-      camera_->zoom(zooms_);
-    }
-    camera_->fly(forward, right, up);
-    camera_numbers_ = camera_->numbers(opened_->scene);
-    picture_old_ = true;
-  }
-  turns_ = pans_ = {};
-  zooms_ = 0;
-}
-
-void Viewer::move_time(double seconds) {
-  if (!frames_ || !frames_->can_move()) return;
-  if (!plays_ || presented_ == 0) return;
-  seconds_ = run_.frames == 0 ? seconds_ + seconds : static_cast<double>(presented_) / frames_per_second();
-}
-
 void Viewer::draw_picture() {
   if (!frames_) return;
   const bool moves = (plays_ && frames_->can_move()) || asked_.rebuild || asked_.draws_always;
@@ -303,27 +231,6 @@ void Viewer::draw_picture() {
   drawn_seconds_ = seconds_;
   picture_old_ = false;
   note_frame(frame, seconds_between(start, ViewClock::now()) * 1000);
-}
-
-bool Viewer::camera_moves() const {
-  const Motion* const motion = opened_->scene.motion.get();
-  return motion && pose_at(*motion, seconds_).camera.has_value();
-}
-
-// Where nobody has moved it.
-std::vector<double> Viewer::camera_now() const {
-  const Scene& scene = opened_->scene;
-  if (camera_moves())
-    return coppice::camera_numbers(scene, view_of(*pose_at(*scene.motion, seconds_).camera));
-  return coppice::camera_numbers(scene, choose_view(scene, {}, width_, height_));
-}
-
-// By the camera that was given or moved, or the one of the scene, as it moves.
-Film Viewer::film_at_time() const {
-  const Scene& scene = opened_->scene;
-  if (camera_numbers_.empty() && camera_moves())
-    return make_film(*pose_at(*scene.motion, seconds_).camera, width_, height_, run_.trace.samples);
-  return make_film(scene, camera_numbers_, width_, height_, run_.trace.samples);
 }
 
 void Viewer::note_frame(const ViewedFrame& frame, double ms) {
