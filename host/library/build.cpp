@@ -163,14 +163,15 @@ void Builder::cmd_refit(VkCommandBuffer commands, const TriangleInput& input, co
                         const MemoryRange& update, KernelQueries* queries) const {
   check_address(input.count.address, 4, true, "count");
   const BuildInput given = to_build_input(input);
-  plan_->cmd_update(
-      commands, input.count.maximum, tree, update, queries,
-      [&](Chain& chain, const BuildPlan& build, const RefitPlan& refit) {
-        append_triangles(chain, {build.triangle_count, build.triangles, build.boxes, build.state}, given);
-        append_refit(chain, build, refit);
-        if (plan_->triangles.wide)
-          append_wide_boxes(chain, build, with_count(*plan_->triangles.wide, build.triangle_count));
-      });
+  plan_->cmd_update(commands, input.count.maximum, tree, update, queries,
+                    [&](Chain& chain, const BuildPlan& build, const RefitPlan& refit) {
+                      append_triangles(chain, {build.triangles.place, build.triangle_count},
+                                       std::get<VertexTriangles>(given.primitives), given.count_at);
+                      append_refit(chain, build, refit);
+                      if (plan_->triangles.wide)
+                        append_wide_boxes(chain, build,
+                                          with_count(*plan_->triangles.wide, build.triangle_count));
+                    });
 }
 
 void Builder::cmd_tree_cost(VkCommandBuffer commands, std::uint32_t maximum, const MemoryRange& tree,

@@ -170,9 +170,8 @@ class Check {
       append_build(chain, build);
       if (wide) append_wide(chain, build, *wide);
       append_refit_order(chain, build, refit);
-      append_triangles(
-          chain, {check_triangles, build.triangles, build.boxes, build.state},
-          {VertexTriangles{.vertices = {chain.at(vertices).value}, .vertex_count = 3 * check_triangles}, {}});
+      append_triangles(chain, build.triangles,
+                       {.vertices = {chain.at(vertices).value}, .vertex_count = 3 * check_triangles});
       append_refit(chain, build, refit);
       if (wide) append_wide_boxes(chain, build, *wide);
       append_tree_cost(chain, build, refit);
