@@ -3,6 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/trace.h"
+#include "lib/camera_ray.glsl"
 #include "lib/film_pixel.glsl"
 #include "lib/ray_words.glsl"
 
@@ -21,7 +22,7 @@ void main() {
   if (i >= args.ray_count) return;
   Film film = args.film.at[0];
   vec2 position = film_position(film_pixel(args.first_ray + i, film), film);
-  precise vec3 direction = film.corner + film.right * position.x + film.down * position.y;
+  vec3 direction = camera_direction(position, film);
   float far = uintBitsToFloat(0x7f800000u);
   store_ray(args.rays, i, Ray(film.position, 0.0, direction, far));
   store_hit(args.hits, i, Hit(far, NO_TRIANGLE, 0.0, 0.0));

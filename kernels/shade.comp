@@ -1,30 +1,18 @@
-// In:  hits. Out: radiance, added up over the samples of a pixel. Ambient colour plus one directional light on the side
-// that faces the ray; the sky where nothing is hit.
+// In:  hits. Out: radiance, added up over the samples of a pixel.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/trace.h"
-#include "lib/exact_vector.glsl"
 #include "lib/ray_words.glsl"
+#include "lib/scene_light.glsl"
 
 layout(local_size_x = SHADE_GROUP) in;
 layout(push_constant, scalar) uniform Push { ShadeArgs args; };
 layout(constant_id = 0) const uint SHADE_DIRECTIONAL_LIGHT = 1u;  // 0 where the scene has none
 
-vec3 sky(vec3 direction, Lighting lighting) {
-  precise float height = max(unit(direction).y, 0.0);
-  precise vec3 colour = lighting.sky_horizon + (lighting.sky_zenith - lighting.sky_horizon) * height;
-  return colour;
-}
-
 vec3 surface(Ray ray, uint index, Lighting lighting) {
   SurfaceMaterial material = args.materials.at[args.material_index.at[index]];
   if (SHADE_DIRECTIONAL_LIGHT == 0u) return material.ambient;
-  Triangle triangle = args.triangles.at[index];
-  vec3 normal = normal_of(triangle);
-  float side = exact_dot(normal, ray.direction) > 0.0 ? -1.0 : 1.0;
-  float cosine = max(exact_dot(normal, lighting.light_direction) * side, 0.0);
-  precise vec3 colour = material.ambient + material.diffuse * cosine;
-  return colour;
+  return lit(material, args.triangles.at[index], ray.direction, lighting);
 }
 
 void main() {

@@ -35,12 +35,13 @@ struct Frame {
   bool lookback;
   Walk walk;
   uint show = SHOW_COLOR;
+  std::uint32_t samples = 1;
 };
 constexpr Frame frames[] = {
     {1000, DeviceBuilder::ploc, true, Walk::binary},
     {1000, DeviceBuilder::hploc, true, Walk::wide_packets},
     {1000, DeviceBuilder::hploc, true, Walk::wide_single},
-    {300, DeviceBuilder::ploc, true, Walk::brute_force},
+    {300, DeviceBuilder::ploc, true, Walk::brute_force, SHOW_COLOR, 2},
     {SORT_SCAN_TILE + 100, DeviceBuilder::ploc, false, Walk::binary},  // one tile alone sorts without a scan
     {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_DEPTH}};
 constexpr std::size_t scan_and_copy = std::size(frames), inputs = scan_and_copy + 1, vertices = inputs + 1,
@@ -67,6 +68,7 @@ Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
   TraceOptions trace_options = test_trace_options(width, height);
   trace_options.walk = frame.walk;
   trace_options.show = frame.show;
+  trace_options.samples = frame.samples;
   std::optional<WidePlan> wide;
   if (is_wide(frame.walk)) wide = plan_wide(layout, build, &build);
   const TracePlan trace =
@@ -82,7 +84,7 @@ Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
                              {}};
   const AnyHitSlots any{trace.rays, layout.add<uint>("any_hits", trace.band_rays), trace.counters, {}};
   LockstepExecutor executor(device, layout);
-  upload_frame(executor, build, trace, arrays, make_film(scene, {}, width, height, 1));
+  upload_frame(executor, build, trace, arrays, make_film(scene, {}, width, height, frame.samples));
   upload_show(executor, trace.show, Show::depth, {0, 100});
   auto difference = executor.run([&](Chain& chain) {
     append_build(chain, build);

@@ -121,6 +121,23 @@ TEST(Traffic, OfWhatIsShown) {
   EXPECT_EQ(bytes_of_view(SHOW_STEPS, "trace_closest"), 2000u * 68 + 64 * 30000 + 500 * 36);
 }
 
+TEST(Traffic, OfAPictureOfOneSample) {
+  Layout layout;
+  const TreeSlots tree = plan_tree(layout, 100, 199);
+  const TracePlan plan = plan_trace(layout, tree, 1, {.width = 40, .height = 25});
+  Chain chain(no_addresses);
+  append_trace(chain, tree, plan);
+  TraceCounters counters{};
+  counters.rays.x = 1000;
+  counters.hits.x = 250;
+  std::map<std::string, std::uint64_t> bytes;
+  for (const Step& step : chain.steps()) {
+    if (stage_of(step)) bytes[stage_of(step)->name] += modelled_bytes(step, counts_of_trace(counters));
+  }
+  EXPECT_EQ(bytes["shade_pixels"], 1000u * 8 + 250 * 64);
+  EXPECT_FALSE(bytes.contains("shade") || bytes.contains("resolve"));
+}
+
 TEST(Traffic, OfATraceOfTwoSamples) {
   Layout layout;
   const TreeSlots tree = plan_tree(layout, 100, 199);

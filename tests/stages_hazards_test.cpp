@@ -225,9 +225,9 @@ TEST_P(FrameHazards, StepsThatMayOverlapMayBeRunInAnyOrder) {
   EXPECT_TRUE(memory_after({.reversed = false}) == memory_after({.reversed = true}));
 }
 
-// A stage of which is said that it only reads: the picture is resolved before it is shaded.
+// A stage of which is said that it only reads: rays are traced before they are made.
 TEST_P(FrameHazards, AFalseDeclarationIsSeen) {
-  StageDeclaration faulty = stages::shade;
+  StageDeclaration faulty = stages::camera_rays;
   std::vector<AddressArg> addresses(faulty.addresses.begin(), faulty.addresses.end());
   for (AddressArg& address : addresses) address.written = false;
   faulty.addresses = addresses;

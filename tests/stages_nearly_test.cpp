@@ -169,8 +169,8 @@ TEST(Nearly, OnlyStagesThatDivideOrTakeRootsAreNearlyEqual) {
   for (const StageDeclaration* const stage : all_stages()) {
     const std::string_view name = stage->name;
     const bool traces = name.starts_with("trace_") && name != "trace_misses";  // which writes constants
-    const bool may =
-        traces || name == "camera_rays" || name == "bounce_rays" || name == "shade" || name == "resolve";
+    const bool may = traces || name == "camera_rays" || name == "bounce_rays" || name == "shade" ||
+                     name == "resolve" || name == "shade_pixels";
     EXPECT_EQ(!stage->nearly.empty(), may) << name;
   }
 }

@@ -20,7 +20,9 @@ Scene scene_far_away() {
 
 View hand_view(const std::vector<double>& numbers) { return given_view(Scene(), numbers); }
 
-void expect_close_points(glm::dvec3 a, glm::dvec3 b, double limit = 1e-9) { EXPECT_LT(glm::length(a - b), limit); }
+void expect_close_points(glm::dvec3 a, glm::dvec3 b, double limit = 1e-9) {
+  EXPECT_LT(glm::length(a - b), limit);
+}
 
 TEST(CameraControl, NumbersGiveTheViewAgainWhereverTheSceneCameFrom) {
   for (const Scene& scene : {Scene(), scene_far_away()}) {

@@ -95,7 +95,16 @@ void TracePieces::append_show(Chain& chain, Vec3Buffer radiance) const {
             groups_of(range_.count, SHOW_GROUP), {plan_.options.show});
 }
 
-void TracePieces::close_range(Chain& chain) {
+void TracePieces::append_pixels(Chain& chain) const {
+  chain.run(
+      stages::shade_pixels,
+      {chain.at(plan_.film), chain.at(tree_.triangles), chain.at(plan_.material_index),
+       chain.at(plan_.materials), chain.at(plan_.lighting), chain.at(plan_.hits, range_.first),
+       chain.at(plan_.srgb_thresholds), chain.at(plan_.image), band_first_ + range_.first, range_.count},
+      groups_of(range_.count, SHADE_PIXELS_TILE), {plan_.options.directional_light});
+}
+
+void TracePieces::append_radiance(Chain& chain) const {
   const auto radiance = chain.at(plan_.radiance, range_.first);
   if (plan_.options.show != SHOW_COLOR)
     append_show(chain, radiance);
@@ -107,6 +116,13 @@ void TracePieces::close_range(Chain& chain) {
                band_first_ + range_.first, range_.count},
               groups_of(range_.count, RESOLVE_GROUP));
   }
+}
+
+void TracePieces::close_range(Chain& chain) {
+  if (keeps_radiance(plan_.options))
+    append_radiance(chain);
+  else
+    append_pixels(chain);
   range_ = {range_.first + range_.count, 0, 0};
   if (range_.first < band_rays()) return;
   range_ = {};

@@ -80,6 +80,8 @@ class TracePieces {
   std::uint32_t band_rays() const;
   void open_range(Chain& chain, std::uint64_t work);
   void close_range(Chain& chain);
+  void append_pixels(Chain& chain) const;
+  void append_radiance(Chain& chain) const;
   void append_shade(Chain& chain, Vec3Buffer radiance) const;
   void append_show(Chain& chain, Vec3Buffer radiance) const;
 

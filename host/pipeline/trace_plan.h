@@ -30,6 +30,9 @@ struct TraceOptions {
 // order of visits does not show.
 bool can_trace_wide(const TraceOptions& options);
 
+// Whether samples are added up before they are pixels, or what they see is not colour.
+bool keeps_radiance(const TraceOptions& options);
+
 // Rays, and what they hit: closest hits so far on the way in, t_max and NO_TRIANGLE where there is none yet.
 struct RaySlots {
   Slot<Ray> rays;
@@ -65,7 +68,7 @@ struct TracePlan : RaySlots {
   Slot<uint> srgb_thresholds;       // in: see srgb_thresholds()
   Slot<uint> image;                 // out: RGBA8, red in the low byte, rows top to bottom
 
-  Slot<vec3> radiance;  // one a ray, in the order of FILM_STRIP
+  Slot<vec3> radiance;  // one a ray, in the order of FILM_STRIP; none where none is kept
   ShowSlots show;
 };
 

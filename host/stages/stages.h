@@ -69,6 +69,7 @@
   STAGE(bounce_rays, BounceRaysArgs, NoConstants, nearly_bounced)                      \
   STAGE(shade, ShadeArgs, ShadeConstants, nearly_radiance)                             \
   STAGE(show, ShowArgs, ShowConstants, nearly_radiance)                                \
+  STAGE(shade_pixels, ShadePixelsArgs, ShadeConstants, nearly_image)                   \
   STAGE(resolve, ResolveArgs, NoConstants, nearly_image)                               \
   STAGE(copy_words, CopyWordsArgs, NoConstants, exactly)                               \
   STAGE(scan_tile_sums, ScanTileSumsArgs, NoConstants, exactly)                        \

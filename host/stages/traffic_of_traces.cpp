@@ -94,6 +94,11 @@ Bytes show(const ShowArgs& a, const RunCounts& counts) {
   return a.ray_count * (sizeof(uint) + radiance) + share(counts.hits, a.ray_count, counts) * of_hit;
 }
 
+Bytes shade_pixels(const ShadePixelsArgs& a, const RunCounts& counts) {
+  return Bytes{a.ray_count} * (4 + 4) +
+         share(counts.hits, a.ray_count, counts) * (4 + sizeof(SurfaceMaterial) + sizeof(Triangle));
+}
+
 Bytes resolve(const ResolveArgs& a, const RunCounts&) { return Bytes{a.ray_count} * (sizeof(vec3) + 4); }
 
 }  // namespace coppice::traffic

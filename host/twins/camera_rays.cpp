@@ -2,6 +2,7 @@
 
 #include "interface/trace.h"
 #include "twins/film_pixel.h"
+#include "twins/shading.h"
 
 namespace coppice::twins {
 
@@ -25,8 +26,7 @@ void camera_rays(const CameraRaysArgs& args) {
     const uvec2 pixel = film_pixel(args.first_ray + i, film);
     const float x = static_cast<float>(pixel.x) + across;
     const float y = static_cast<float>(pixel.y) + down;
-    const vec3 direction = film.corner + film.right * x + film.down * y;
-    args.rays[i] = {film.position, 0.0f, direction, infinity};
+    args.rays[i] = {film.position, 0.0f, film_direction(film, x, y), infinity};
     args.hits[i] = {infinity, NO_TRIANGLE, 0.0f, 0.0f};
   }
 }

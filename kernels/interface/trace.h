@@ -9,6 +9,8 @@ const uint TRACE_PACKET = 64;  // rays that trace_wide takes through the tree to
 const uint TRACE_BLOCK = 128;  // rays of a subgroup of trace_wide_single
 const uint BOUNCE_RAYS_GROUP = 64;
 const uint SHADE_GROUP = 64;
+const uint SHADE_PIXELS_PER_INVOCATION = 8;
+const uint SHADE_PIXELS_TILE = SHADE_GROUP * SHADE_PIXELS_PER_INVOCATION;
 const uint RESOLVE_GROUP = 64;
 
 const uint TRACE_STACK_LIMIT = 256;    // most entries of a traversal stack
@@ -248,6 +250,20 @@ struct ShadeArgs {
   Vec3Buffer radiance;  // ray_count; summed over the samples
   uint ray_count;
   uint sample_index;
+};
+
+// Of pictures of one sample a pixel.
+struct ShadePixelsArgs {
+  READS(FilmBuffer) film;
+  READS(TriangleBuffer) triangles;
+  READS(UintBuffer) material_index;  // one a triangle
+  READS(SurfaceMaterialBuffer) materials;
+  READS(LightingBuffer) lighting;
+  READS(HitBuffer) hits;              // ray_count
+  READS(UintBuffer) srgb_thresholds;  // as in ResolveArgs
+  UintBuffer image;                   // as in ResolveArgs
+  uint first_ray;                     // of the picture
+  uint ray_count;
 };
 
 struct ResolveArgs {
