@@ -236,6 +236,33 @@ TEST(SceneFiles, CamerasAndLight) {
   EXPECT_EQ(up.positions[2], glm::vec3(0, 0, -1));
 }
 
+// A skin with a morph target, placed twice, between things that stand still: joints and weights of each are
+// its own.
+TEST_F(SceneFile, SkinsInSeveralPlaces) {
+  const std::string reed_path = std::string(COPPICE_SCENES) + "/reed.gltf";
+  const Scene reed = open_scene(reed_path);
+  const json file = {
+      {"meshes", {{"reed", {{"file", reed_path}}}, {"ball", {{"built_in", "hard:sphere:20"}}}}},
+      {"objects",
+       {{{"mesh", "ball"}},
+        {{"mesh", "reed"}, {"translation", {5, 0, 0}}},
+        {{"mesh", "reed"}, {"translation", {0, 0, 7}}, {"scale", {1, 2, -1}}}}}};
+  const Scene scene = load_scene_file(write("s.json", file.dump()));
+  const std::size_t count = reed.positions.size(), first = scene.positions.size() - 2 * count;
+  ASSERT_GT(first, 0u);
+  for (const double seconds : {0.0, 0.8, 3.3}) {
+    const std::vector<glm::vec3> one = positions_at(*reed.motion, seconds),
+                                 all = positions_at(*scene.motion, seconds);
+    for (std::size_t v = 0; v < count; ++v) {
+      const glm::vec3 p = one[v];
+      EXPECT_LT(glm::distance(all[first + v], glm::vec3(p.x + 5, p.y, p.z)), 1e-5f) << v;
+      EXPECT_LT(glm::distance(all[first + count + v], glm::vec3(p.x, 2 * p.y, 7 - p.z)), 1e-5f) << v;
+    }
+  }
+  EXPECT_EQ(scene.motion->morphs.size(), 2u);
+  EXPECT_NE(scene.motion->morphs[0].weight, scene.motion->morphs[1].weight);
+}
+
 TEST_F(SceneFile, FilesBesideItAndSequences) {
   std::filesystem::create_directories(folder_ / "m");
   for (int i = 0; i < 3; ++i) {
