@@ -53,7 +53,7 @@ Scene mesh_named(const std::string& path, const GltfReading& reading) {
   return scene;
 }
 
-Scene parse(const json& file) {
+Scene read_scene(const json& file) {
   SceneFileSources sources;
   sources.mesh = mesh_named;
   sources.built_in = [](const std::string& name) { return make_built_in(name); };
@@ -61,16 +61,16 @@ Scene parse(const json& file) {
   return parse_scene_file(file.dump(), "s.json", sources);
 }
 
-std::string error_of(const json& file) {
+std::string scene_error_of(const json& file) {
   try {
-    parse(file);
+    read_scene(file);
   } catch (const InputError& error) {
     return error.what();
   }
   return "";
 }
 
-json one_object(const json& more = json::object()) {
+json with_object(const json& more = json::object()) {
   json file = {
       {"meshes", {{"t", {{"file", "t.obj"}}}, {"q", {{"file", "q.obj"}}}, {"walk", {{"file", "walk.glb"}}}}},
       {"objects", {{{"mesh", "t"}}}}};
@@ -92,27 +92,27 @@ void expect_corner_at(const Scene& scene, double seconds, std::size_t corner, gl
 }
 
 TEST(SceneFiles, ObjectsPlaceMeshes) {
-  const Scene plain = parse(one_object());
+  const Scene plain = read_scene(with_object());
   EXPECT_EQ(plain.motion, nullptr);
   EXPECT_EQ(plain.positions, (std::vector<glm::vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
-  expect_corner(parse(one_object({{"translation", {1, 2, 3}}, {"scale", 2}})), 1, {3, 2, 3});
+  expect_corner(read_scene(with_object({{"translation", {1, 2, 3}}, {"scale", 2}})), 1, {3, 2, 3});
   expect_corner(
-      parse(one_object({{"scale", {1, 2, 3}}, {"rotation", {{"axis", {0, 0, 5}}, {"degrees", 90}}}})), 2,
-      {-2, 0, 0});
-  expect_corner(parse(one_object({{"rotation", {0, 0, 1, 1}}})), 1, {0, 1, 0});
+      read_scene(with_object({{"scale", {1, 2, 3}}, {"rotation", {{"axis", {0, 0, 5}}, {"degrees", 90}}}})),
+      2, {-2, 0, 0});
+  expect_corner(read_scene(with_object({{"rotation", {0, 0, 1, 1}}})), 1, {0, 1, 0});
   const Scene mirrored =
-      parse(one_object({{"matrix", {{-1, 0, 0, 4}, {0, 1, 0, 5}, {0, 0, 1, 6}, {0, 0, 0, 1}}}}));
+      read_scene(with_object({{"matrix", {{-1, 0, 0, 4}, {0, 1, 0, 5}, {0, 0, 1, 6}, {0, 0, 0, 1}}}}));
   expect_corner(mirrored, 1, {3, 5, 6});
   EXPECT_EQ(mirrored.indices, (std::vector<glm::uvec3>{{0, 2, 1}}));
 }
 
 TEST(SceneFiles, ParentsMaterialsAndTwoObjects) {
   json file =
-      one_object({{"name", "wheel"}, {"parent", "car"}, {"translation", {1, 0, 0}}, {"material", "red"}});
+      with_object({{"name", "wheel"}, {"parent", "car"}, {"translation", {1, 0, 0}}, {"material", "red"}});
   file["objects"].push_back({{"name", "car"}, {"rotation", {{"axis", {0, 1, 0}}, {"degrees", 180}}}});
   file["objects"].push_back({{"mesh", "q"}});
   file["materials"] = {{"red", {{"diffuse", {1, 0, 0}}, {"opacity", 0.5}}}};
-  const Scene scene = parse(file);
+  const Scene scene = read_scene(file);
   expect_corner(scene, 0, {-1, 0, 0});
   EXPECT_EQ(scene.indices, (std::vector<glm::uvec3>{{0, 1, 2}, {3, 4, 5}, {3, 5, 6}}));
   EXPECT_EQ(scene.materials[scene.material_index[0]].name, "red");
@@ -122,7 +122,7 @@ TEST(SceneFiles, ParentsMaterialsAndTwoObjects) {
 }
 
 TEST(SceneFiles, KeyframesMoveObjectsAndWhatIsBelowThem) {
-  json file = one_object(
+  json file = with_object(
       {{"name", "a"},
        {"keyframes",
         {{"translation", {{"times", {1, 3}}, {"values", {{0, 0, 0}, {4, 0, 0}}}}},
@@ -130,7 +130,7 @@ TEST(SceneFiles, KeyframesMoveObjectsAndWhatIsBelowThem) {
          {"scale", {{"times", {0, 2}}, {"values", {{1, 1, 1}, {2, 2, 2}}}, {"interpolation", "step"}}}}}});
   file["objects"].push_back({{"mesh", "q"}, {"parent", "a"}, {"translation", {0, 0, 1}}});
   file["objects"].push_back({{"mesh", "q"}, {"translation", {7, 0, 0}}});
-  const Scene scene = parse(file);
+  const Scene scene = read_scene(file);
   EXPECT_EQ(scene.motion->duration_seconds, 4);
   expect_corner(scene, 1, {1, 0, 0});
   expect_corner_at(scene, 1, 1, {-1, 0, 0});  // half a turn
@@ -142,7 +142,7 @@ TEST(SceneFiles, KeyframesMoveObjectsAndWhatIsBelowThem) {
       {"rotation", {{"times", {0, 1}}, {"values", {{0, 0, 0, 1}, {0, 0, -1, 0}}}}}};
   file["duration"] = 12.5;
   file["frames_per_second"] = 24;
-  const Scene turned = parse(file);
+  const Scene turned = read_scene(file);
   expect_corner_at(turned, 0.5, 1, {0, -1, 0});
   EXPECT_EQ(turned.motion->duration_seconds, 12.5);
   EXPECT_EQ(turned.motion->frames_per_second, 24);
@@ -150,11 +150,11 @@ TEST(SceneFiles, KeyframesMoveObjectsAndWhatIsBelowThem) {
 
 // A cubic curve goes through its values, without a jump in speed.
 TEST(SceneFiles, CubicKeyframesAreSmooth) {
-  const Scene scene = parse(one_object({{"keyframes",
-                                         {{"translation",
-                                           {{"times", {0, 1, 3, 4}},
-                                            {"values", {{0, 0, 0}, {1, 0, 0}, {1, 2, 0}, {0, 0, 0}}},
-                                            {"interpolation", "cubic"}}}}}}));
+  const Scene scene = read_scene(with_object({{"keyframes",
+                                               {{"translation",
+                                                 {{"times", {0, 1, 3, 4}},
+                                                  {"values", {{0, 0, 0}, {1, 0, 0}, {1, 2, 0}, {0, 0, 0}}},
+                                                  {"interpolation", "cubic"}}}}}}));
   const auto at = [&](double seconds) { return glm::dvec3(positions_at(*scene.motion, seconds)[0]); };
   expect_corner_at(scene, 1, 0, {1, 0, 0});
   expect_corner_at(scene, 3, 0, {1, 2, 0});
@@ -168,24 +168,24 @@ TEST(SceneFiles, CubicKeyframesAreSmooth) {
 }
 
 TEST(SceneFiles, PartsThatMoveByThemselvesGoWithTheirObject) {
-  json file = one_object();
+  json file = with_object();
   file["objects"][0] = {{"mesh", "walk"}, {"translation", {0, 5, 0}}};
   file["objects"].push_back(
       {{"mesh", "walk"},
        {"keyframes", {{"translation", {{"times", {0, 1}}, {"values", {{0, 0, 0}, {0, 0, 8}}}}}}}});
-  const Scene scene = parse(file);
+  const Scene scene = read_scene(file);
   expect_corner_at(scene, 2, 0, {2, 5, 0});
   expect_corner_at(scene, 0.5, 3, {0.5f, 0, 4});
   EXPECT_EQ(scene.motion->duration_seconds, 2);
   ASSERT_TRUE(scene.camera.has_value());
   EXPECT_EQ(scene.camera->position, glm::vec3(0, 5, 9));
   file["meshes"]["walk"]["animation"] = "run";
-  EXPECT_EQ(parse(file).motion->duration_seconds, 5);
+  EXPECT_EQ(read_scene(file).motion->duration_seconds, 5);
 }
 
 TEST(SceneFiles, DeformationsTakeTheirNumbersFromTheMesh) {
-  json file = one_object({{"mesh", "q"}, {"deform", {{"kind", "wave"}, {"amount", 0.5}, {"seconds", 3}}}});
-  const Scene wave = parse(file);
+  json file = with_object({{"mesh", "q"}, {"deform", {{"kind", "wave"}, {"amount", 0.5}, {"seconds", 3}}}});
+  const Scene wave = read_scene(file);
   ASSERT_TRUE(wave.motion);
   ASSERT_EQ(wave.motion->deformations.size(), 1u);
   EXPECT_EQ(wave.motion->deformations[0].centre, glm::vec3(0.5f, 0.5f, 0));
@@ -195,12 +195,12 @@ TEST(SceneFiles, DeformationsTakeTheirNumbersFromTheMesh) {
   EXPECT_EQ(wave.positions, positions_at(*wave.motion, 0));
   EXPECT_NE(wave.positions, positions_at(*wave.motion, 1));
   file["objects"][0]["deform"] = {{"kind", "sway"}, {"size", 4}, {"centre", {1, 2, 3}}};
-  EXPECT_EQ(parse(file).motion->deformations[0].centre, glm::vec3(1, 2, 3));
-  EXPECT_EQ(parse(file).motion->deformations[0].kind, DeformKind::sway);
+  EXPECT_EQ(read_scene(file).motion->deformations[0].centre, glm::vec3(1, 2, 3));
+  EXPECT_EQ(read_scene(file).motion->deformations[0].kind, DeformKind::sway);
   for (const auto& [name, kind] :
        {std::pair{"explode", DeformKind::explode}, std::pair{"swarm", DeformKind::swarm}}) {
     file["objects"][0]["deform"] = {{"kind", name}, {"piece_triangles", 2}};
-    const Scene pieces = parse(file);
+    const Scene pieces = read_scene(file);
     EXPECT_EQ(pieces.motion->deformations[0].kind, kind);
     EXPECT_EQ(pieces.motion->deformations[0].piece_vertices, 6u);
     EXPECT_EQ(pieces.positions.size(), 6u);  // no vertex is shared
@@ -209,10 +209,10 @@ TEST(SceneFiles, DeformationsTakeTheirNumbersFromTheMesh) {
 }
 
 TEST(SceneFiles, CamerasAndLight) {
-  json file = one_object();
+  json file = with_object();
   file["camera"] = {{"position", {0, 1, 5}}, {"target", {0, 0, 0}}, {"fov", 55}};
   file["light"] = {{"direction", {0, 0, 2}}, {"radiance", {3, 2, 1}}, {"ambient", {0.1, 0.2, 0.3}}};
-  const Scene still = parse(file);
+  const Scene still = read_scene(file);
   EXPECT_EQ(still.camera->position, glm::vec3(0, 1, 5));
   EXPECT_EQ(still.camera->vertical_fov_degrees, 55.0f);
   EXPECT_EQ(still.light.direction, glm::vec3(0, 0, 1));
@@ -221,7 +221,7 @@ TEST(SceneFiles, CamerasAndLight) {
   EXPECT_EQ(still.motion, nullptr);
   file["camera"]["keyframes"] = {{"position", {{"times", {0, 2}}, {"values", {{0, 1, 5}, {4, 1, 5}}}}},
                                  {"fov", {{"times", {0, 4}}, {"values", {40, 60}}}}};
-  const Scene moves = parse(file);
+  const Scene moves = read_scene(file);
   ASSERT_TRUE(moves.motion);
   EXPECT_EQ(moves.motion->duration_seconds, 4);
   const Camera camera = *pose_at(*moves.motion, 1).camera;
@@ -229,7 +229,7 @@ TEST(SceneFiles, CamerasAndLight) {
   EXPECT_EQ(camera.vertical_fov_degrees, 45.0f);
   EXPECT_EQ(moves.camera->vertical_fov_degrees, 40.0f);
   file["up"] = "z";
-  const Scene up = parse(file);
+  const Scene up = read_scene(file);
   EXPECT_EQ(up.camera->position, glm::vec3(0, 5, -1));  // z is up
   EXPECT_EQ(up.light.direction, glm::vec3(0, 1, 0));
   EXPECT_LT(glm::distance(pose_at(*up.motion, 1).camera->position, glm::vec3(2, 5, -1)), 1e-6f);
@@ -342,7 +342,7 @@ TEST_F(SceneFile, AnimFilesWithTheirFacesBesideThem) {
 }
 
 TEST(SceneFiles, FarFromTheOriginAnOffsetIsSubtracted) {
-  const Scene scene = parse(one_object({{"translation", {1e7, 0, 0}}, {"scale", 0.01}}));
+  const Scene scene = read_scene(with_object({{"translation", {1e7, 0, 0}}, {"scale", 0.01}}));
   EXPECT_NE(scene.offset.x, 0);
   EXPECT_NEAR(scene.positions[1].x - scene.positions[0].x, 0.01, 1e-6);
   ASSERT_EQ(scene.warnings.size(), 1u);
@@ -455,7 +455,7 @@ TEST(SceneFiles, EveryErrorNamesItsPlaceAndWhatWasExpected) {
        "s.json: /materials/a~1b/diffuse: 1, expected an array of 3"},
   };
   for (const auto& [pointer, value, says] : faults) {
-    json broken = one_object();
+    json broken = with_object();
     const json::json_pointer place(pointer);
     if (value.is_null()) {
       broken[place.parent_pointer()].erase(place.back());
@@ -464,18 +464,18 @@ TEST(SceneFiles, EveryErrorNamesItsPlaceAndWhatWasExpected) {
         broken["objects"][0]["translation"] = {0, 0, 0};
       broken[place] = value;
     }
-    const std::string message = error_of(broken);
+    const std::string message = scene_error_of(broken);
     EXPECT_NE(message.find(says), message.npos) << pointer << ": " << message;
     EXPECT_EQ(message.empty(), *says == 0) << pointer << ": " << message;
   }
-  json cycle = one_object({{"name", "a"}, {"parent", "b"}});
+  json cycle = with_object({{"name", "a"}, {"parent", "b"}});
   cycle["objects"].push_back({{"name", "b"}, {"parent", "a"}});
-  EXPECT_EQ(error_of(cycle),
+  EXPECT_EQ(scene_error_of(cycle),
             "s.json: /objects/0/parent: the object is below itself (a cycle), expected a tree");
   cycle["objects"][1]["name"] = "a";
-  EXPECT_EQ(error_of(cycle), "s.json: /objects/1/name: 'a' again, expected another name");
-  json moving = one_object({{"mesh", "walk"}, {"deform", {{"kind", "explode"}}}});
-  EXPECT_EQ(error_of(moving),
+  EXPECT_EQ(scene_error_of(cycle), "s.json: /objects/1/name: 'a' again, expected another name");
+  json moving = with_object({{"mesh", "walk"}, {"deform", {{"kind", "explode"}}}});
+  EXPECT_EQ(scene_error_of(moving),
             "s.json: /objects/0/deform/kind: \"explode\" needs vertices that no animation moves");
 }
 

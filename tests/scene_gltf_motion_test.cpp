@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-Scene parse(const std::string& text, const GltfReading& reading = {}) {
+Scene read_moving(const std::string& text, const GltfReading& reading = {}) {
   return parse_gltf(
       text, "m.gltf", [](const std::string&) -> std::string { throw InputError("no such file"); }, reading);
 }
@@ -28,7 +28,7 @@ struct Matrix {
   double at[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
 };
 
-Matrix times(const Matrix& a, const Matrix& b) {
+Matrix product(const Matrix& a, const Matrix& b) {
   Matrix c;
   for (int i = 0; i < 4; ++i) {
     for (int j = 0; j < 4; ++j) {
@@ -59,7 +59,7 @@ struct Channel {
   std::size_t width;
 };
 
-Numbers value_at(const Channel& channel, double time) {
+Numbers channel_value(const Channel& channel, double time) {
   const std::size_t keys = channel.input.size(), n = channel.width;
   const bool cubic = channel.interpolation == "CUBICSPLINE";
   const auto value = [&](std::size_t key, std::size_t part, std::size_t c) {
@@ -100,9 +100,9 @@ Numbers value_at(const Channel& channel, double time) {
 // --- A file: a chain of four nodes, of which the last three are joints, a skinned mesh with two morph
 // targets beside it, and a rigid mesh below the second joint.
 
-class Sample {
+class SampleFile {
  public:
-  explicit Sample(std::uint32_t seed) : random_(seed) {
+  explicit SampleFile(std::uint32_t seed) : random_(seed) {
     text_.json["scenes"] = {{{"nodes", {0, 4}}}};
     for (int i = 0; i < 6; ++i) {
       nodes_.push_back({numbers(3), unit(), {draw(0.5f, 2), draw(0.5f, 2), draw(0.5f, 2)}});
@@ -139,14 +139,14 @@ class Sample {
       auto [t, q, s] = nodes_[i];
       for (const Channel& channel : channels_) {
         if (channel.node != static_cast<int>(i)) continue;
-        if (channel.path == "translation") t = value_at(channel, time);
-        if (channel.path == "rotation") q = value_at(channel, time);
-        if (channel.path == "scale") s = value_at(channel, time);
+        if (channel.path == "translation") t = channel_value(channel, time);
+        if (channel.path == "rotation") q = channel_value(channel, time);
+        if (channel.path == "scale") s = channel_value(channel, time);
       }
       const Matrix own = matrix_of(t, q, s);
-      global[i] = parents_[i] < 0 ? own : times(global[static_cast<std::size_t>(parents_[i])], own);
+      global[i] = parents_[i] < 0 ? own : product(global[static_cast<std::size_t>(parents_[i])], own);
     }
-    const Numbers weights = value_at(channels_.back(), time);
+    const Numbers weights = channel_value(channels_.back(), time);
     std::vector<Numbers> result;
     for (std::size_t v = 0; v < VERTICES; ++v) {  // node 5, rigid, comes first: depth first from node 0
       result.push_back(moved(global[5], {rigid_[3 * v], rigid_[3 * v + 1], rigid_[3 * v + 2]}));
@@ -161,7 +161,7 @@ class Sample {
         const std::size_t joint = joints_[4 * v + k];
         Matrix bind;
         for (std::size_t i = 0; i < 16; ++i) bind.at[i % 4][i / 4] = inverse_[16 * joint + i];
-        const Numbers q = moved(times(global[joint + 1], bind), p);
+        const Numbers q = moved(product(global[joint + 1], bind), p);
         for (std::size_t c = 0; c < 3; ++c) sum[c] += weights_[4 * v + k] * q[c];
       }
       result.push_back(sum);
@@ -255,7 +255,7 @@ class Sample {
   double duration_ = 0;
 };
 
-void expect_near(const std::vector<glm::vec3>& got, const std::vector<Numbers>& expected, double time) {
+void expect_positions(const std::vector<glm::vec3>& got, const std::vector<Numbers>& expected, double time) {
   ASSERT_EQ(got.size(), expected.size());
   for (std::size_t v = 0; v < got.size(); ++v) {
     double reach = 1;
@@ -269,35 +269,35 @@ void expect_near(const std::vector<glm::vec3>& got, const std::vector<Numbers>& 
 
 TEST(GltfMotion, SkinsMorphTargetsAndNodesAgainstTheSpecification) {
   for (std::uint32_t seed = 1; seed <= 30; ++seed) {
-    Sample sample(seed);
-    const Scene scene = parse(sample.text());
+    SampleFile sample(seed);
+    const Scene scene = read_moving(sample.text());
     ASSERT_TRUE(scene.motion);
     EXPECT_TRUE(scene.warnings.empty()) << scene.warnings[0];
     EXPECT_NEAR(scene.motion->duration_seconds, sample.duration(), 1e-9);
-    expect_near(scene.positions, sample.positions_at(0), 0);
+    expect_positions(scene.positions, sample.positions_at(0), 0);
     for (int i = 0; i <= 20; ++i) {
       const double time = sample.duration() * i / 20;
-      expect_near(positions_at(*scene.motion, time), sample.positions_at(time), time);
+      expect_positions(positions_at(*scene.motion, time), sample.positions_at(time), time);
       EXPECT_FALSE(HasFailure()) << seed;
     }
     const double later = 0.3 * sample.duration();
-    expect_near(positions_at(*scene.motion, later + 3 * sample.duration()), sample.positions_at(later),
-                later);
+    expect_positions(positions_at(*scene.motion, later + 3 * sample.duration()), sample.positions_at(later),
+                     later);
   }
 }
 
 TEST(GltfMotion, WithoutAnAnimationSkinsAndTargetsAreAppliedOnce) {
-  Sample sample(5);
+  SampleFile sample(5);
   json text = json::parse(sample.text());
   text.erase("animations");
   text["nodes"][4]["weights"] = {0.25, -0.5};
-  const Scene scene = parse(text.dump());
+  const Scene scene = read_moving(text.dump());
   EXPECT_EQ(scene.motion, nullptr);
   text["nodes"][4].erase("weights");
   text["meshes"][0]["weights"] = {0.25, -0.5};
-  EXPECT_EQ(parse(text.dump()).positions, scene.positions);
+  EXPECT_EQ(read_moving(text.dump()).positions, scene.positions);
   text["meshes"][0].erase("weights");
-  EXPECT_NE(parse(text.dump()).positions, scene.positions);
+  EXPECT_NE(read_moving(text.dump()).positions, scene.positions);
 }
 
 // Two clips for the same node, one for another.
@@ -318,7 +318,7 @@ TEST(GltfMotion, AnimationsPlayTogetherUnlessTheyMoveTheSame) {
   clip("walk", 0, 1);
   clip("run", 0, 10);
   clip("wave", 1, 100);
-  const Scene both = parse(text.embedded());
+  const Scene both = read_moving(text.embedded());
   ASSERT_EQ(both.warnings.size(), 1u);
   EXPECT_EQ(
       both.warnings[0],
@@ -327,12 +327,12 @@ TEST(GltfMotion, AnimationsPlayTogetherUnlessTheyMoveTheSame) {
   const std::vector<glm::vec3> half = positions_at(*both.motion, 0.5);
   EXPECT_EQ(half[0].x, 0.5f);
   EXPECT_EQ(half[3].x, 50.0f);
-  const Scene run = parse(text.embedded(), {.animation = "run"});
+  const Scene run = read_moving(text.embedded(), {.animation = "run"});
   EXPECT_EQ(positions_at(*run.motion, 0.5)[0].x, 5.0f);
   EXPECT_EQ(positions_at(*run.motion, 0.5)[3].x, 0.0f);
-  EXPECT_EQ(positions_at(*parse(text.embedded(), {.animation = "2"}).motion, 0.5)[3].x, 50.0f);
+  EXPECT_EQ(positions_at(*read_moving(text.embedded(), {.animation = "2"}).motion, 0.5)[3].x, 50.0f);
   try {
-    parse(text.embedded(), {.animation = "hop"});
+    read_moving(text.embedded(), {.animation = "hop"});
     FAIL();
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(), "m.gltf: /animations: no animation 'hop', there are: 'walk', 'run', 'wave'");
@@ -350,7 +350,7 @@ TEST(GltfMotion, ACameraThatMoves) {
         {{{"input", text.floats("SCALAR", {0, 2})},
           {"output", text.floats("VEC4", {0, 0, 0, 1, 0, half, 0, half})}}}},
        {"channels", {{{"sampler", 0}, {"target", {{"node", 1}, {"path", "rotation"}}}}}}}};
-  const Scene scene = parse(text.embedded());
+  const Scene scene = read_moving(text.embedded());
   ASSERT_TRUE(scene.motion && scene.camera);
   EXPECT_EQ(scene.camera->position, glm::vec3(0, 0, 4));
   const Pose end = pose_at(*scene.motion, 2);
@@ -361,12 +361,12 @@ TEST(GltfMotion, ACameraThatMoves) {
 }
 
 TEST(GltfMotion, InfluencesBeyondFourAreLeftOutAndSaid) {
-  Sample sample(3);
+  SampleFile sample(3);
   json text = json::parse(sample.text());
   json& attributes = text["meshes"][0]["primitives"][0]["attributes"];
   attributes["JOINTS_1"] = attributes["JOINTS_0"];
   attributes["WEIGHTS_1"] = attributes["WEIGHTS_0"];
-  const Scene scene = parse(text.dump());
+  const Scene scene = read_moving(text.dump());
   ASSERT_EQ(scene.warnings.size(), 1u);
   EXPECT_EQ(scene.warnings[0],
             "m.gltf: /meshes/0/primitives/0: vertices with more than 4 joints keep the 4 of most weight (and "
@@ -411,14 +411,14 @@ TEST(GltfMotion, EveryErrorNamesItsPlace) {
        {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1},
        "/nodes/0/matrix: expected translation"},
   };
-  Sample sample(4);
+  SampleFile sample(4);
   const json whole = json::parse(sample.text());
   for (const auto& [pointer, value, says] : faults) {
     json broken = whole;
     broken[json::json_pointer(pointer)] = value;
     std::string message;
     try {
-      parse(broken.dump());
+      read_moving(broken.dump());
     } catch (const InputError& error) {
       message = error.what();
     }
@@ -431,7 +431,7 @@ TEST(GltfMotion, EveryErrorNamesItsPlace) {
       {{"samplers", {{{"input", input}, {"output", text.floats("VEC3", std::vector<float>(9))}}}},
        {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "scale"}}}}}}}};
   try {
-    parse(text.embedded());
+    read_moving(text.embedded());
     FAIL();
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(),

@@ -15,36 +15,36 @@ namespace {
 using nlohmann::json;
 using LoadGltf = ObjFolder;
 
-Scene parse(const std::string& text, const GltfReading& reading = {}) {
+Scene read_gltf(const std::string& text, const GltfReading& reading = {}) {
   return parse_gltf(
       text, "t.gltf", [](const std::string&) -> std::string { throw InputError("no such file"); }, reading);
 }
 
-std::string error_of(const std::string& text, const GltfReading& reading = {}) {
+std::string gltf_error_of(const std::string& text, const GltfReading& reading = {}) {
   try {
-    parse(text, reading);
+    read_gltf(text, reading);
   } catch (const InputError& error) {
     return error.what();
   }
   return "";
 }
 
-const std::vector<glm::vec3> CORNERS = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+const std::vector<glm::vec3> TRIANGLE_CORNERS = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
 
 TEST_F(LoadGltf, ATriangleEmbeddedInAGlbAndInAFileOfItsOwn) {
   GltfText text = gltf_triangle();
   const Scene embedded = load_gltf(write("a.gltf", text.embedded()));
   EXPECT_EQ(embedded.name, "a");
-  EXPECT_EQ(embedded.positions, CORNERS);
+  EXPECT_EQ(embedded.positions, TRIANGLE_CORNERS);
   EXPECT_EQ(embedded.indices, (std::vector<glm::uvec3>{{0, 1, 2}}));
   EXPECT_EQ(embedded.material_index, (std::vector<std::uint32_t>{0}));
   EXPECT_EQ(embedded.motion, nullptr);
   EXPECT_TRUE(embedded.warnings.empty());
-  EXPECT_EQ(load_gltf(write("b.glb", text.binary())).positions, CORNERS);
+  EXPECT_EQ(load_gltf(write("b.glb", text.binary())).positions, TRIANGLE_CORNERS);
 
   text.json["buffers"] = {{{"byteLength", text.bytes.size()}, {"uri", "my%20bytes.bin"}}};
   write("my bytes.bin", text.bytes + "more");
-  EXPECT_EQ(load_gltf(write("c.gltf", text.json.dump())).positions, CORNERS);
+  EXPECT_EQ(load_gltf(write("c.gltf", text.json.dump())).positions, TRIANGLE_CORNERS);
   std::filesystem::remove(folder_ / "my bytes.bin");
   try {
     load_gltf(folder_ / "c.gltf");
@@ -62,7 +62,7 @@ TEST(Gltf, StripsFansAndVerticesWithoutIndices) {
   const int positions = text.floats("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 2, 2, 0, 3, 3, 0, 4, 4, 0});
   const auto triangles = [&](int mode) {
     text.json["meshes"] = {{{"primitives", {{{"mode", mode}, {"attributes", {{"POSITION", positions}}}}}}}};
-    return parse(text.embedded());
+    return read_gltf(text.embedded());
   };
   using Triangles = std::vector<glm::uvec3>;
   EXPECT_EQ(triangles(4).indices, (Triangles{{0, 1, 2}, {3, 4, 5}}));
@@ -92,7 +92,7 @@ TEST(Gltf, EveryComponentType) {
                             accessor(text.view<std::uint16_t>({2, 1, 0}), 5123, "SCALAR", false),
                             accessor(text.view<std::uint32_t>({2, 1, 0}), 5125, "SCALAR", false)}) {
     primitive()["indices"] = indices;
-    EXPECT_EQ(parse(text.embedded()).indices, (std::vector<glm::uvec3>{{2, 1, 0}}));
+    EXPECT_EQ(read_gltf(text.embedded()).indices, (std::vector<glm::uvec3>{{2, 1, 0}}));
   }
   const int words = text.view<std::uint32_t>({1, 2, 3, 4, 5, 6, 7, 8, 9});
   const int shorts = text.view<std::int16_t>({-32768, 32767, 0, 0, -32767, 7, 0, 0, 1, 2, 3, 0});
@@ -115,7 +115,7 @@ TEST(Gltf, EveryComponentType) {
         Case{unsigned_bytes, 5121, true, {1, 0, 0.2f}}, Case{unsigned_shorts, 5123, false, {65535, 0, 13107}},
         Case{unsigned_shorts, 5123, true, {1, 0, 0.2f}}}) {
     primitive()["attributes"]["POSITION"] = accessor(view, type, "VEC3", normalized);
-    const Scene scene = parse(text.embedded());
+    const Scene scene = read_gltf(text.embedded());
     ASSERT_EQ(scene.positions.size(), 3u);
     EXPECT_EQ(scene.positions[0], first) << type << normalized;
   }
@@ -128,9 +128,9 @@ TEST(Gltf, SparseAccessorsWithAndWithoutAView) {
       {"indices", {{"bufferView", text.view<std::uint8_t>({0, 2})}, {"componentType", 5121}}},
       {"values", {{"bufferView", text.view<float>({7, 8, 9, 4, 5, 6})}}}};
   text.json["accessors"][1]["sparse"] = sparse;
-  EXPECT_EQ(parse(text.embedded()).positions, (std::vector<glm::vec3>{{7, 8, 9}, {1, 0, 0}, {4, 5, 6}}));
+  EXPECT_EQ(read_gltf(text.embedded()).positions, (std::vector<glm::vec3>{{7, 8, 9}, {1, 0, 0}, {4, 5, 6}}));
   text.json["accessors"][1].erase("bufferView");
-  EXPECT_EQ(parse(text.embedded()).positions, (std::vector<glm::vec3>{{7, 8, 9}, {0, 0, 0}, {4, 5, 6}}));
+  EXPECT_EQ(read_gltf(text.embedded()).positions, (std::vector<glm::vec3>{{7, 8, 9}, {0, 0, 0}, {4, 5, 6}}));
 }
 
 TEST(Gltf, NodesPlaceMeshesAndMirrorsTurnTrianglesRound) {
@@ -145,7 +145,7 @@ TEST(Gltf, NodesPlaceMeshesAndMirrorsTurnTrianglesRound) {
                          {"translation", {10, 0, 0}}},
                         {{"mesh", 0}},
                         {{"mesh", 0}, {"matrix", {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 5, 1}}}};
-  const Scene scene = parse(text.embedded());
+  const Scene scene = read_gltf(text.embedded());
   ASSERT_EQ(scene.positions.size(), 6u);
   // (x, y, z) becomes (10 - 3 y, 2 x, 4 z).
   const std::vector<glm::vec3> expected = {{10, 2, 0},  {10, 4, 0},   {7, 2, 0},
@@ -155,9 +155,9 @@ TEST(Gltf, NodesPlaceMeshesAndMirrorsTurnTrianglesRound) {
   }
   EXPECT_EQ(scene.indices, (std::vector<glm::uvec3>{{0, 1, 2}, {3, 5, 4}}));
   text.json.erase("scene");  // the first one
-  EXPECT_EQ(parse(text.embedded()).positions, CORNERS);
+  EXPECT_EQ(read_gltf(text.embedded()).positions, TRIANGLE_CORNERS);
   text.json.erase("scenes");  // all nodes
-  EXPECT_EQ(parse(text.embedded()).indices.size(), 3u);
+  EXPECT_EQ(read_gltf(text.embedded()).indices.size(), 3u);
 }
 
 TEST(Gltf, MaterialsInTermsOfMtl) {
@@ -181,7 +181,7 @@ TEST(Gltf, MaterialsInTermsOfMtl) {
       {{"alphaMode", "MASK"}, {"pbrMetallicRoughness", {{"baseColorFactor", {1, 1, 1, 0.25}}}}},
       {{"extensions", {{"KHR_materials_unlit", json::object()}}},
        {"pbrMetallicRoughness", {{"baseColorFactor", {0.5, 1, 0, 1}}}}}};
-  const Scene scene = parse(text.embedded());
+  const Scene scene = read_gltf(text.embedded());
   EXPECT_EQ(scene.material_index, (std::vector<std::uint32_t>{1}));
   ASSERT_EQ(scene.materials.size(), 5u);
   const Material& wood = scene.materials[1];
@@ -212,7 +212,7 @@ TEST(Gltf, TheFirstPerspectiveCameraOfTheScene) {
   text.json["nodes"] = {{{"mesh", 0}},
                         {{"camera", 0}},
                         {{"camera", 1}, {"translation", {-5, 0, 0}}, {"rotation", {0, -half, 0, half}}}};
-  const Scene scene = parse(text.embedded());
+  const Scene scene = read_gltf(text.embedded());
   ASSERT_TRUE(scene.camera.has_value());
   EXPECT_EQ(scene.camera->position, glm::vec3(-5, 0, 0));
   EXPECT_NEAR(scene.camera->target.x, 0.5, 1e-5);  // as far as the middle
@@ -226,7 +226,7 @@ TEST(Gltf, TheFirstPerspectiveCameraOfTheScene) {
 TEST(Gltf, FarFromTheOriginAnOffsetIsSubtracted) {
   GltfText text = gltf_triangle();
   text.json["nodes"][0]["translation"] = {5000000.125, 0, 0};
-  const Scene scene = parse(text.embedded());
+  const Scene scene = read_gltf(text.embedded());
   EXPECT_NE(scene.offset.x, 0);
   EXPECT_EQ(scene.positions[1].x - scene.positions[0].x, 1.0f);
   EXPECT_EQ(to_file(scene, scene.positions[0]), glm::dvec3(5000000.125, 0, 0));
@@ -331,7 +331,7 @@ TEST(Gltf, EveryErrorNamesItsPlaceAndWhatWasExpected) {
     } else {
       broken[place] = value;
     }
-    const std::string message = error_of(broken.dump());
+    const std::string message = gltf_error_of(broken.dump());
     EXPECT_TRUE(message.starts_with("t.gltf: ")) << pointer << ": " << message;
     EXPECT_NE(message.find(says), message.npos) << pointer << ": " << message;
     EXPECT_EQ(message.find('\n'), message.npos) << message;
@@ -339,22 +339,23 @@ TEST(Gltf, EveryErrorNamesItsPlaceAndWhatWasExpected) {
 }
 
 TEST(Gltf, WhatIsNoGltf) {
-  EXPECT_EQ(error_of("{\"asset\": {\n  \"version\" 2}}"),
+  EXPECT_EQ(gltf_error_of("{\"asset\": {\n  \"version\" 2}}"),
             "t.gltf:2:13: no JSON: syntax error while parsing object separator - unexpected number literal; "
             "expected ':'");
-  EXPECT_NE(error_of("{\"a\": 1, \"a\": 2}").find("/a: given twice"), std::string::npos);
-  EXPECT_NE(error_of("[]").find("t.gltf: [], expected an object"), std::string::npos) << error_of("[]");
-  EXPECT_NE(error_of(std::string(100000, '[')).find("nested too deep"), std::string::npos);
-  EXPECT_NE(error_of("{\"asset\": {\"version\": 1e999}}").find("no JSON"), std::string::npos);
+  EXPECT_NE(gltf_error_of("{\"a\": 1, \"a\": 2}").find("/a: given twice"), std::string::npos);
+  EXPECT_NE(gltf_error_of("[]").find("t.gltf: [], expected an object"), std::string::npos)
+      << gltf_error_of("[]");
+  EXPECT_NE(gltf_error_of(std::string(100000, '[')).find("nested too deep"), std::string::npos);
+  EXPECT_NE(gltf_error_of("{\"asset\": {\"version\": 1e999}}").find("no JSON"), std::string::npos);
   const std::string binary = gltf_triangle().binary();
-  EXPECT_EQ(parse(binary).positions, CORNERS);
+  EXPECT_EQ(read_gltf(binary).positions, TRIANGLE_CORNERS);
   for (std::size_t size = 4; size < binary.size(); ++size) {
-    const std::string message = error_of(binary.substr(0, size));
+    const std::string message = gltf_error_of(binary.substr(0, size));
     EXPECT_TRUE(message.starts_with("t.gltf: ")) << size << message;
   }
   std::string other = binary;
   other[4] = 1;
-  EXPECT_EQ(error_of(other), "t.gltf: GLB version 1, expected 2");
+  EXPECT_EQ(gltf_error_of(other), "t.gltf: GLB version 1, expected 2");
 }
 
 }  // namespace

@@ -13,13 +13,13 @@ namespace {
 
 using LoadPly = ObjFolder;
 
-std::string header(const std::string& format, int vertices, int faces) {
+std::string ply_header(const std::string& format, int vertices, int faces) {
   return "ply\nformat " + format + " 1.0\ncomment made by hand\nelement vertex " + std::to_string(vertices) +
          "\nproperty float x\nproperty float y\nproperty float z\nelement face " + std::to_string(faces) +
          "\nproperty list uchar int vertex_indices\nend_header\n";
 }
 
-std::string error_of(const std::string& text) {
+std::string ply_error_of(const std::string& text) {
   try {
     parse_ply(text, "m.ply");
   } catch (const InputError& error) {
@@ -30,49 +30,50 @@ std::string error_of(const std::string& text) {
 
 // The bytes of a number, the last first where `is_big`.
 template <class T>
-std::string bytes_of(T value, bool is_big) {
+std::string ply_bytes(T value, bool is_big) {
   std::string bytes(reinterpret_cast<const char*>(&value), sizeof value);
   if (is_big) std::reverse(bytes.begin(), bytes.end());
   return bytes;
 }
 
-const std::string SQUARE = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
-const std::vector<glm::vec3> CORNERS = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+const std::string PLY_SQUARE = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+const std::vector<glm::vec3> PLY_CORNERS = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
 using Triangles = std::vector<glm::uvec3>;
 
 TEST(Ply, AsciiWithPolygons) {
-  const Scene scene = parse_ply(header("ascii", 4, 2) + SQUARE + "4 0 1 2 3\n3 0 2 1\n", "m.ply");
-  EXPECT_EQ(scene.positions, CORNERS);
+  const Scene scene = parse_ply(ply_header("ascii", 4, 2) + PLY_SQUARE + "4 0 1 2 3\n3 0 2 1\n", "m.ply");
+  EXPECT_EQ(scene.positions, PLY_CORNERS);
   EXPECT_EQ(scene.indices, (Triangles{{0, 1, 2}, {0, 2, 3}, {0, 2, 1}}));
   EXPECT_EQ(scene.material_index.size(), 3u);
   EXPECT_TRUE(scene.warnings.empty());
-  EXPECT_EQ(parse_ply(header("ascii", 4, 1) + "\n" + SQUARE + "\n4 0 1 2 3", "m.ply").indices.size(), 2u);
+  EXPECT_EQ(parse_ply(ply_header("ascii", 4, 1) + "\n" + PLY_SQUARE + "\n4 0 1 2 3", "m.ply").indices.size(),
+            2u);
 }
 
 TEST(Ply, EveryLineEnding) {
-  const std::string text = header("ascii", 4, 1) + SQUARE + "4 0 1 2 3\n";
+  const std::string text = ply_header("ascii", 4, 1) + PLY_SQUARE + "4 0 1 2 3\n";
   for (const std::string end : {"\r\n", "\r"}) {
     std::string other;
     for (const char c : text) other += c == '\n' ? end : std::string(1, c);
-    EXPECT_EQ(parse_ply(other, "m.ply").positions, CORNERS);
+    EXPECT_EQ(parse_ply(other, "m.ply").positions, PLY_CORNERS);
   }
 }
 
 TEST(Ply, BinaryOfBothByteOrders) {
   for (const bool is_big : {false, true}) {
-    std::string text = header(is_big ? "binary_big_endian" : "binary_little_endian", 4, 1);
-    for (const glm::vec3 corner : CORNERS) {
-      for (int axis = 0; axis < 3; ++axis) text += bytes_of(corner[axis], is_big);
+    std::string text = ply_header(is_big ? "binary_big_endian" : "binary_little_endian", 4, 1);
+    for (const glm::vec3 corner : PLY_CORNERS) {
+      for (int axis = 0; axis < 3; ++axis) text += ply_bytes(corner[axis], is_big);
     }
     text += '\4';
-    for (int i = 0; i < 4; ++i) text += bytes_of(i, is_big);
+    for (int i = 0; i < 4; ++i) text += ply_bytes(i, is_big);
     const Scene scene = parse_ply(text, "m.ply");
-    EXPECT_EQ(scene.positions, CORNERS);
+    EXPECT_EQ(scene.positions, PLY_CORNERS);
     EXPECT_EQ(scene.indices, (Triangles{{0, 1, 2}, {0, 2, 3}}));
     for (std::size_t size = text.size() - 1; size > text.size() - 60; --size) {
-      EXPECT_TRUE(error_of(text.substr(0, size)).starts_with("m.ply:")) << size;
+      EXPECT_TRUE(ply_error_of(text.substr(0, size)).starts_with("m.ply:")) << size;
     }
-    EXPECT_EQ(error_of(text.substr(0, text.size() - 2)),
+    EXPECT_EQ(ply_error_of(text.substr(0, text.size() - 2)),
               "m.ply: face 0: the file ends, expected 4 more bytes");
   }
 }
@@ -84,11 +85,11 @@ TEST(Ply, EveryTypeAndWhatIsReadOver) {
       "property list uint16 uint8 vertex_index\nproperty list char double more\nelement vertex 3\n"
       "property float64 y\nproperty ushort x\nproperty short z\nproperty uchar red\nelement nothing 9\n"
       "element edge 2\nproperty uint32 a\nend_header\n";
-  text += '\1' + bytes_of<std::uint16_t>(3, true) + std::string("\2\1\0", 3) + '\1' + bytes_of(2.5, true);
+  text += '\1' + ply_bytes<std::uint16_t>(3, true) + std::string("\2\1\0", 3) + '\1' + ply_bytes(2.5, true);
   for (int v = 0; v < 3; ++v) {
-    text += bytes_of(v + 0.5, true) +
-            bytes_of<std::uint16_t>(static_cast<std::uint16_t>(65000 + 5 * v * v), true) +
-            bytes_of<std::int16_t>(static_cast<std::int16_t>(-3 * v), true) + '\7';
+    text += ply_bytes(v + 0.5, true) +
+            ply_bytes<std::uint16_t>(static_cast<std::uint16_t>(65000 + 5 * v * v), true) +
+            ply_bytes<std::int16_t>(static_cast<std::int16_t>(-3 * v), true) + '\7';
   }
   text += std::string(8, 'x');
   const Scene scene = parse_ply(text, "m.ply");
@@ -103,27 +104,28 @@ TEST(Ply, StripsOfTriangles) {
   const std::string text =
       "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
       "property float z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n";
-  EXPECT_EQ(parse_ply(text + SQUARE + "8 0 1 2 3 -1 3 2 1\n", "m.ply").indices,
+  EXPECT_EQ(parse_ply(text + PLY_SQUARE + "8 0 1 2 3 -1 3 2 1\n", "m.ply").indices,
             (Triangles{{0, 1, 2}, {1, 3, 2}, {3, 2, 1}}));
 }
 
 TEST(Ply, NumbersThatAreNoneMakeInactiveTriangles) {
-  EXPECT_EQ(
-      count_inactive(parse_ply(header("ascii", 3, 1) + "nan 0 0\n1e999 0 0\n+1 -inf 2\n3 0 1 2\n", "m.ply")),
-      1u);
+  EXPECT_EQ(count_inactive(
+                parse_ply(ply_header("ascii", 3, 1) + "nan 0 0\n1e999 0 0\n+1 -inf 2\n3 0 1 2\n", "m.ply")),
+            1u);
 }
 
 TEST_F(LoadPly, IsOpenedByItsName) {
-  const Scene scene = open_scene(write("a.PLY", header("ascii", 4, 1) + SQUARE + "4 0 1 2 3\n").string());
+  const Scene scene =
+      open_scene(write("a.PLY", ply_header("ascii", 4, 1) + PLY_SQUARE + "4 0 1 2 3\n").string());
   EXPECT_EQ(scene.name, "a");
   EXPECT_EQ(scene.indices.size(), 2u);
-  EXPECT_TRUE(parse_ply(header("ascii", 1, 0) + "0 0 0\n", "m.ply").indices.empty());
+  EXPECT_TRUE(parse_ply(ply_header("ascii", 1, 0) + "0 0 0\n", "m.ply").indices.empty());
 }
 
 TEST(Ply, EveryErrorNamesItsPlace) {
-  const std::string ascii = header("ascii", 4, 1);
+  const std::string ascii = ply_header("ascii", 4, 1);
   const auto with = [&](const std::string& from, const std::string& to) {
-    std::string text = ascii + SQUARE + "4 0 1 2 3\n";
+    std::string text = ascii + PLY_SQUARE + "4 0 1 2 3\n";
     return text.replace(text.find(from), from.size(), to);
   };
   const std::vector<std::pair<std::string, std::string>> faults = {
@@ -155,7 +157,7 @@ TEST(Ply, EveryErrorNamesItsPlace) {
       {with("4 0 1 2 3\n", ""), "m.ply:15: face 0: the file ends, expected another number"},
   };
   for (const auto& [text, says] : faults) {
-    const std::string message = error_of(text);
+    const std::string message = ply_error_of(text);
     EXPECT_TRUE(message.starts_with(says)) << "expected " << says << ", got " << message;
   }
 }

@@ -9,7 +9,7 @@
 namespace coppice {
 namespace {
 
-using Target = std::pair<int, std::string>;  // node, path
+using AnimatedPath = std::pair<int, std::string>;  // node, path
 
 // The index of each channel in the file: tinygltf leaves out those without a node.
 std::vector<std::size_t> channel_indices(const GltfDocument& document, std::size_t animation) {
@@ -26,10 +26,10 @@ bool is_path(const std::string& path) {
 }
 
 // Of an animation, and only what is known.
-std::set<Target> targets_of(const GltfDocument& document, std::size_t index, SceneNotes& notes) {
+std::set<AnimatedPath> targets_of(const GltfDocument& document, std::size_t index, SceneNotes& notes) {
   const tinygltf::Animation& animation = document.model.animations[index];
   const std::vector<std::size_t> indices = channel_indices(document, index);
-  std::set<Target> targets;
+  std::set<AnimatedPath> targets;
   for (std::size_t i = 0; i < animation.channels.size(); ++i) {
     const tinygltf::AnimationChannel& channel = animation.channels[i];
     const std::string pointer =
@@ -159,10 +159,10 @@ std::vector<NodeTrack> read_gltf_tracks(const GltfDocument& document, const Gltf
     end = first + 1;
   }
   std::vector<NodeTrack> tracks;
-  std::set<Target> moved;
+  std::set<AnimatedPath> moved;
   for (std::size_t index = first; index < end; ++index) {
-    const std::set<Target> targets = targets_of(document, index, notes);
-    const auto is_moved = [&](const Target& target) { return moved.contains(target); };
+    const std::set<AnimatedPath> targets = targets_of(document, index, notes);
+    const auto is_moved = [&](const AnimatedPath& target) { return moved.contains(target); };
     if (std::any_of(targets.begin(), targets.end(), is_moved)) {
       notes.add("/animations/" + std::to_string(index),
                 "animation moves what an earlier one moves and is not played; a scene file can choose it");

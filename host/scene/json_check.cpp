@@ -108,14 +108,14 @@ std::string expected_of(const json& root, const json& unresolved) {
 }
 
 // A place in the document, with what the schema says of it.
-struct Place {
+struct SchemaPlace {
   std::string pointer;
   const json* value;
   const json* schema;  // null: nothing
 };
 
-Place find_place(const json& document, const json& root, const std::vector<std::string>& context) {
-  Place place{"", &document, &root};
+SchemaPlace find_place(const json& document, const json& root, const std::vector<std::string>& context) {
+  SchemaPlace place{"", &document, &root};
   for (std::size_t i = 1; i < context.size(); ++i) {
     const std::string key = context[i].substr(1, context[i].size() - 2);  // "[key]"
     const json* const parent = place.schema;
@@ -139,7 +139,7 @@ Place find_place(const json& document, const json& root, const std::vector<std::
 }
 
 // Of an object: the first key that may not or must be there.
-void check_keys(const Place& place, const std::string& name) {
+void check_keys(const SchemaPlace& place, const std::string& name) {
   const json& schema = *place.schema;
   for (const json& key : schema.value("required", json::array())) {
     if (!place.value->contains(key.get<std::string>())) {
@@ -230,7 +230,7 @@ void check_schema(const json& document, std::string_view schema_text, const std:
     if (!deepest || error.context.size() > deepest->context.size()) deepest = &error;
   }
   if (!deepest) fail_at(name, "", "does not fit its schema");
-  const Place place = find_place(document, root, deepest->context);
+  const SchemaPlace place = find_place(document, root, deepest->context);
   if (!place.schema) fail_at(name, place.pointer, printable(std::string_view(deepest->description)));
   if (place.value->is_object()) check_keys(place, name);
   fail_at(name, place.pointer, shortened(*place.value) + ", expected " + expected_of(root, *place.schema));
