@@ -72,6 +72,8 @@ TEST_F(Command, BenchChecksAndTimes) {
       {"build --most 12000", "gpu-lbvh", 3 * 2, 12000, "hploc_build_ms"},
       {"build --most 10000 --builder gpu-ploc,gpu-hploc", "gpu-hploc", 2, 10000,
        "ploc_merge_percent_of_copy"},
+      {"refit --most 12000 --builder gpu-ploc", "refit-wide-ploc", 2 * 2, 12000, "times_copy"},
+      {"refit terrain:500", "refit-wide-lbvh", 3 * 2, 500, "order_ms"},
       {"trace terrain:500 --size 32x24 --builder gpu-lbvh", "trace_shadow_any", 10, 0, "not_as_on_cpu"}};
   for (const auto& c : cases) {
     const Outcome outcome =

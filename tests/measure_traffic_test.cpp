@@ -7,6 +7,7 @@
 #include "measure/traffic.h"
 #include "pipeline/batch.h"
 #include "pipeline/build_plan.h"
+#include "pipeline/refit.h"
 #include "pipeline/scan_plan.h"
 #include "pipeline/trace_any.h"
 #include "pipeline/wide_plan.h"
@@ -68,6 +69,41 @@ TEST(Traffic, OfABuildWithoutLookbackAndWith60Bits) {
   EXPECT_EQ(bytes["sort_scatter"], 6u * (480000 + 2 * 2 * 8192));
   EXPECT_EQ(bytes["ploc_tile_counts"], 4u * 22000 + 32 * 19000 + 8 * 22);  // the second round pairs all
   EXPECT_EQ(bytes["ploc_tile_scan"], 24u * 22);
+}
+
+// 1,000 leaves under 999 inner nodes: 400 of height 1 have 800 of them, 599 of height 2 (as if that could be)
+// the rest.
+TEST(Traffic, OfARefit) {
+  RunCounts counts;
+  counts.active_count = 1000;
+  counts.refit_levels.resize(3);
+  counts.refit_levels[0].count = 400;
+  counts.refit_levels[1].count = 599;
+  Layout layout;
+  const TreeSlots tree = plan_tree(layout, 1600, 2 * 1600 - 1);
+  const RefitPlan refit = plan_refit(layout, tree);
+  Chain chain(no_addresses);
+  append_refit_order(chain, tree, refit);
+  append_refit(chain, tree, refit);
+  append_tree_cost(chain, tree, refit);
+  std::map<std::string, std::uint64_t> bytes;
+  for (const Step& step : chain.steps()) {
+    if (stage_of(step)) bytes[stage_of(step)->name] += modelled_bytes(step, counts);
+  }
+  EXPECT_EQ(bytes["refit_absent"], 36u * 1600 + 200);
+  EXPECT_EQ(bytes["refit_keys"], 32u * 1999 + 8 * 999);
+  EXPECT_EQ(bytes["refit_levels"], 36u * 257);
+  EXPECT_EQ(bytes["refit_appeared"], 200u + 36 * 600);
+  EXPECT_EQ(bytes["refit_boxes"], 100u * 999 + 68 * 1000);
+  EXPECT_EQ(bytes["refit_rest"], 0u);
+  EXPECT_EQ(bytes["tree_areas"], 32u * 1999 + 4 * 2);
+  EXPECT_EQ(bytes["tree_area_sum"], 4u * 2 + 32);
+  counts.primitive_count = 1000;  // all are in leaves
+  for (const Step& step : chain.steps()) {
+    if (stage_of(step) == &stages::refit_absent || stage_of(step) == &stages::refit_appeared) {
+      EXPECT_EQ(modelled_bytes(step, counts), 0u);
+    }
+  }
 }
 
 // 64 triangles under 9 wide nodes: the root has 8, which have 8 leaves each.
