@@ -9,6 +9,7 @@
 
 #include "analysis/validate.h"
 #include "builders/ploc.h"
+#include "interface/refit.h"
 #include "scene/random.h"
 #include "support/floor.h"
 
@@ -56,6 +57,32 @@ class FindFault : public testing::Test {
 TEST_F(FindFault, AcceptsAValidTree) { EXPECT_EQ(fault(), "none"); }
 
 TEST_F(FindFault, AcceptsNoNodesForNoTriangles) { EXPECT_FALSE(find_fault({}, {})); }
+
+// Behind a refit an inactive triangle keeps its leaf, with the box of nothing and no other; an active one has
+// none such.
+TEST_F(FindFault, BoxesOfNothingInARefittedTreeOnly) {
+  std::vector<Node> built = nodes_;
+  const std::vector<Triangle> triangles = triangles_;
+  const auto set_nothing = [](Node& node) {
+    node.box_min = vec3(NOTHING_BOX);
+    node.box_max = vec3(-NOTHING_BOX);
+  };
+  for (Node& node : nodes_) set_nothing(node);
+  for (Triangle& triangle : triangles_) triangle.b.y = std::nanf("");
+  EXPECT_EQ(fault({.refitted = true}), "none");
+  expect_fault("box_min > box_max");
+  nodes_[some_leaf()].box_max.x = 0;
+  expect_fault("does not contain that of its child", {.refitted = true});
+  set_nothing(nodes_[some_leaf()]);
+  triangles_[nodes_[some_leaf()].child] = triangles[nodes_[some_leaf()].child];
+  expect_fault("no box for", {.refitted = true});
+  nodes_ = built;
+  triangles_ = triangles;
+  EXPECT_EQ(fault({.refitted = true}), "none");
+  triangles_[nodes_[some_leaf()].child].a.z = std::nanf("");
+  expect_fault("has a box for inactive", {.refitted = true});
+  expect_fault("holds inactive");
+}
 
 TEST_F(FindFault, AcceptsNoNodesForInactiveTriangles) {
   const std::vector<Triangle> inactive = {{vec3(0), vec3(NOT_A_NUMBER), vec3(1)},
