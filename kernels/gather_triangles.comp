@@ -5,26 +5,22 @@
 #extension GL_GOOGLE_include_directive : require
 #include "interface/gather.h"
 #include "lib/device_count.glsl"
-#include "lib/finite.glsl"
 #include "lib/subgroup_run.glsl"
+#include "lib/transform.glsl"
 
 layout(local_size_x = GATHER_TRIANGLES_GROUP) in;
 layout(push_constant, scalar) uniform Push { GatherTrianglesArgs args; };
-
-// The rows of the transform; none if it is null.
-struct Transform {
-  vec4 rows[3];
-};
 
 vec4 load_row(uint row) {
   UintBuffer words = UintBuffer(uint64_t(args.transform) + row * 16u);
   return uintBitsToFloat(uvec4(words.at[0], words.at[1], words.at[2], words.at[3]));
 }
 
+// Whatever, if it is null.
 Transform load_transform() {
   Transform transform;
   if (uint64_t(args.transform) != 0ul)
-    [[unroll]] for (uint row = 0u; row < 3u; ++row) transform.rows[row] = load_row(row);
+    [[unroll]] for (uint row = 0u; row < 3u; ++row) transform.rows[row] = flushed_row(load_row(row));
   return transform;
 }
 
@@ -36,22 +32,6 @@ uint index_of(uint corner) {
   return args.index_bytes == 4u ? word : bitfieldExtract(word, int(uint(at) & 2u) * 8, 16);
 }
 
-// Intermediate results too, so that it is all the same which devices flush denormals.
-float product(float a, float b) {
-  precise float rounded = a * b;
-  return flushed(rounded);
-}
-
-float sum(float a, float b) {
-  precise float rounded = a + b;
-  return flushed(rounded);
-}
-
-float transformed(vec4 row, vec3 position) {
-  vec4 by = vec4(flushed(row.x), flushed(row.y), flushed(row.z), flushed(row.w));
-  return sum(sum(sum(product(by.x, position.x), product(by.y, position.y)), product(by.z, position.z)), by.w);
-}
-
 vec3 inactive_corner() { return vec3(uintBitsToFloat(GATHERED_INACTIVE)); }
 
 vec3 load_corner(uint corner, Transform transform) {
@@ -60,8 +40,7 @@ vec3 load_corner(uint corner, Transform transform) {
   UintBuffer words = UintBuffer(uint64_t(args.vertices) + uint64_t(vertex) * args.vertex_stride);
   vec3 position = flushed(uintBitsToFloat(uvec3(words.at[0], words.at[1], words.at[2])));
   if (uint64_t(args.transform) == 0ul) return position;
-  return vec3(transformed(transform.rows[0], position), transformed(transform.rows[1], position),
-              transformed(transform.rows[2], position));
+  return transformed(transform, position);
 }
 
 void main() {

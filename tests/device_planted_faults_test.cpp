@@ -20,6 +20,7 @@
 #include "scene/hard_cases.h"
 #include "stages/lockstep_executor.h"
 #include "stages/stages.h"
+#include "support/instances.h"
 #include "support/moving_scenes.h"
 #include "support/test_device.h"
 
@@ -45,7 +46,7 @@ constexpr Frame frames[] = {
     {SORT_SCAN_TILE + 100, DeviceBuilder::ploc, false, Walk::binary},  // one tile alone sorts without a scan
     {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_DEPTH}};
 constexpr std::size_t scan_and_copy = std::size(frames), inputs = scan_and_copy + 1, vertices = inputs + 1,
-                      refits = vertices + 1, chain_count = refits + 1;
+                      refits = vertices + 1, instances = refits + 1, chain_count = instances + 1;
 
 using Spoil = std::function<void(std::vector<Step>&, const LockstepExecutor&)>;
 
@@ -181,9 +182,33 @@ Found run_refit(Device& device, const Spoil& spoil) {
   return {std::move(difference), {executor.nearly().begin(), executor.nearly().end()}};
 }
 
+// Two levels, of instances that move.
+Found run_instances(Device& device, const Spoil& spoil) {
+  InstancesToTrace scene;
+  scene.meshes = {random_triangles(200, 1, 0.5f), random_triangles(30, 2, 0.5f)};
+  for (uint i = 0; i < 100; ++i) scene.mesh_index.push_back(i % 2);
+  scene.transforms.resize(100);
+  std::vector<Ray> rays;
+  for (uint i = 0; i < width * height; ++i) {
+    const float x = static_cast<float>(i % width) / width, y = static_cast<float>(i / width) / height;
+    rays.push_back({{8, 0, 0}, 0, {-1, y - 0.5f, x - 0.5f}, 1e30f});
+  }
+  Layout layout(device.properties().max_block_bytes);
+  const InstanceSlots slots = plan_for(layout, scene, rays.size());
+  LockstepExecutor executor(device, layout);
+  upload_instances(executor, slots, scene, rays);
+  auto difference = executor.run([&](Chain& chain) {
+    append_moves(chain, slots.plan, 1, 12345, 1);
+    append_all(chain, slots, test_trace_options(1, 1));
+    spoil(chain.steps(), executor);
+  });
+  return {std::move(difference), {executor.nearly().begin(), executor.nearly().end()}};
+}
+
 Found run_chain(Device& device, std::size_t chain, const Spoil& spoil) {
   if (chain == vertices) return run_vertices(device, spoil);
   if (chain == refits) return run_refit(device, spoil);
+  if (chain == instances) return run_instances(device, spoil);
   if (chain == inputs) return run_inputs(device, spoil);
   return chain == scan_and_copy ? run_scan_and_copy(device, spoil) : run_frame(device, frames[chain], spoil);
 }

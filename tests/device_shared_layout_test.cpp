@@ -81,7 +81,10 @@ TEST(SharedLayout, ElementsOfEverySlot) {
   EXPECT_SAME_LAYOUT(VertexJoints);
   EXPECT_SAME_LAYOUT(RefitLevel);
   EXPECT_SAME_LAYOUT(RefitState);
-  EXPECT_EQ(seen.size(), 26u);
+  EXPECT_SAME_LAYOUT(InstanceTransform);
+  EXPECT_SAME_LAYOUT(MeshRange);
+  EXPECT_SAME_LAYOUT(PlacedInstance);
+  EXPECT_EQ(seen.size(), 29u);
 }
 
 }  // namespace

@@ -19,10 +19,11 @@ std::string describe_error_word(std::uint32_t error_word) {
       {ERROR_PLOC_ROUNDS,
        "ploc_finish or batch_build: the rounds did not end with one cluster within their bound"},
       {ERROR_TREE_TOO_DEEP,
-       "trace_closest, trace_any or trace_candidates: the tree is deeper than the traversal stack"},
+       "trace_closest, trace_any, trace_candidates or trace_instances: the tree is deeper than the traversal "
+       "stack"},
       {ERROR_TRACE_STEPS,
-       "trace_closest, trace_wide, trace_wide_single, trace_any, trace_wide_any or trace_candidates: a ray "
-       "needs more steps than this driver's loops may take"},
+       "trace_closest, trace_wide, trace_wide_single, trace_any, trace_wide_any, trace_candidates "
+       "or trace_instances: a ray needs more steps than this driver's loops may take"},
       {ERROR_COUNT,
        "primitive_bounds, box_bounds, sort_pass, sort_scatter, prefix_scan or batch_build: the count on the "
        "device is larger than "

@@ -63,6 +63,12 @@ Verdict judge(const AnyHit& cpu, const AnyHit& gpu, NearlyEqual& result) {
   return Verdict::beyond;
 }
 
+struct HitInstance {
+  uint word;
+};
+
+Verdict judge(const HitInstance&, const HitInstance&, NearlyEqual&) { return Verdict::beyond; }
+
 Verdict judge(const BoxCandidate& cpu, const BoxCandidate& gpu, NearlyEqual&) {
   const float scale = std::max(std::abs(cpu.t_enter), std::abs(gpu.t_enter));
   return cpu.primitive == gpu.primitive && within(cpu.t_enter, gpu.t_enter, t_tolerance * scale)
@@ -145,6 +151,8 @@ NearlyEqual compare_nearly(Nearly like, std::span<const std::byte> cpu, std::spa
       return compare<Hit>(cpu, gpu, thousandth);
     case Nearly::any_hits:
       return compare<AnyHit>(cpu, gpu, thousandth);
+    case Nearly::hit_instances:
+      return compare<HitInstance>(cpu, gpu, hundredth);
     case Nearly::candidates:
       return compare<BoxCandidate>(cpu, gpu, hundredth);
     case Nearly::candidate_counts:

@@ -14,7 +14,17 @@ struct RunCounts;
 
 // What of a stage's result may differ between a GPU and the twin, because it divides or takes a square root,
 // which Vulkan lets be off by some ulps. The limits are in stages/nearly.h.
-enum class Nearly { rays, hits, any_hits, candidates, candidate_counts, counters, radiance, image };
+enum class Nearly {
+  rays,
+  hits,
+  any_hits,
+  hit_instances,
+  candidates,
+  candidate_counts,
+  counters,
+  radiance,
+  image
+};
 
 struct NearlySlot {
   const char* slot;

@@ -5,6 +5,7 @@
 #include "interface/copy.h"
 #include "interface/gather.h"
 #include "interface/hploc.h"
+#include "interface/instances.h"
 #include "interface/morton.h"
 #include "interface/ploc.h"
 #include "interface/refit.h"
@@ -66,6 +67,9 @@
   STAGE(trace_wide_any, TraceWideAnyArgs, TraceWideConstants, nearly_any_hits)         \
   STAGE(trace_candidates, TraceCandidatesArgs, TraceCandidatesConstants, nearly_boxes) \
   STAGE(trace_brute_force, TraceBruteForceArgs, TraceBruteForceConstants, nearly_hits) \
+  STAGE(move_instances, MoveInstancesArgs, NoConstants, exactly)                       \
+  STAGE(instance_boxes, InstanceBoxesArgs, NoConstants, exactly)                       \
+  STAGE(trace_instances, TraceInstancesArgs, TraceInstancesConstants, nearly_levels)   \
   STAGE(bounce_rays, BounceRaysArgs, NoConstants, nearly_bounced)                      \
   STAGE(shade, ShadeArgs, ShadeConstants, nearly_radiance)                             \
   STAGE(show, ShowArgs, ShowConstants, nearly_radiance)                                \
@@ -90,6 +94,8 @@ inline constexpr NearlySlot nearly_any_hits[] = {{"any_hits", Nearly::any_hits},
 inline constexpr NearlySlot nearly_boxes[] = {{"candidates", Nearly::candidates},
                                               {"candidate_counts", Nearly::candidate_counts},
                                               {"counters", Nearly::counters}};
+inline constexpr NearlySlot nearly_levels[] = {
+    {"hits", Nearly::hits}, {"hit_instances", Nearly::hit_instances}, {"counters", Nearly::counters}};
 inline constexpr NearlySlot nearly_bounced[] = {{"bounced_rays", Nearly::rays}};
 inline constexpr NearlySlot nearly_radiance[] = {{"radiance", Nearly::radiance}};
 inline constexpr NearlySlot nearly_image[] = {{"image", Nearly::image}};

@@ -70,6 +70,22 @@ Bytes trace_candidates(const TraceCandidatesArgs& a, const RunCounts& counts) {
   return walk_bytes(a, ray_and_word, pairs_of(counts) + counts.hits * sizeof(BoxCandidate), counts);
 }
 
+Bytes move_instances(const MoveInstancesArgs& a, const RunCounts&) {
+  return Bytes{a.instance_count} * sizeof(InstanceTransform);
+}
+
+// Meshes and their roots are few.
+Bytes instance_boxes(const InstanceBoxesArgs& a, const RunCounts&) {
+  return Bytes{a.instance_count} * (sizeof(InstanceTransform) + 4 + sizeof(PlacedInstance) + sizeof(Aabb));
+}
+
+// Of each hit the way to the triangle at least: the instance and its transform.
+Bytes trace_instances(const TraceInstancesArgs& a, const RunCounts& counts) {
+  return a.ray_count * (ray_and_hit + 4) + share(pairs_of(counts), a.ray_count, counts) +
+         share(counts.hits, a.ray_count, counts) *
+             (sizeof(PlacedInstance) + sizeof(InstanceTransform) + sizeof(Triangle));
+}
+
 Bytes trace_brute_force(const TraceBruteForceArgs& a, const RunCounts&) {
   return a.ray_count * ray_and_hit + a.triangle_count * sizeof(Triangle);
 }

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "interface/instances.h"
+#include "pipeline/build_plan.h"
+#include "pipeline/trace_plan.h"
+
+namespace coppice {
+
+// Two levels: meshes, each with a tree of its own, and a tree whose leaves are instances of them. Both are
+// built on the device, one behind the other in as few submits as the caller likes; the host knows neither
+// transforms nor boxes. Instances are of meshes, not of instances.
+struct InstancePlan {
+  BuildOptions options;
+  std::vector<MeshRange> ranges;  // of each mesh: what `meshes` holds
+  std::uint32_t instance_count = 0;
+
+  // Of all meshes, one behind the other.
+  Slot<MeshRange> meshes;         // in
+  Slot<Triangle> mesh_triangles;  // in: in the space of the mesh; denormals and -0 as +0
+  Slot<Node> mesh_nodes;
+  Slot<BuildState> mesh_states;  // one a mesh
+
+  Slot<InstanceTransform> transforms;  // in, or by append_moves
+  Slot<uint> mesh_index;               // in: one an instance
+  Slot<PlacedInstance> placed;
+  Slot<Aabb> instance_boxes;
+  Slot<uint> mesh_height;
+
+  BuildPlan scratch;  // of the largest build, one after the other
+  BuildPlan top;      // over the instances; its nodes and state are out
+};
+
+// For meshes of so many triangles each. Throws LayoutError if a slot does not fit a block, and
+// std::invalid_argument for options out of range or more triangles or instances than a build takes.
+InstancePlan plan_instances(Layout& layout, std::span<const std::uint32_t> mesh_triangles,
+                            std::uint32_t instance_count, const BuildOptions& options);
+
+// Where the triangles of a mesh lie.
+Slot<Triangle> triangles_of(const InstancePlan& plan, std::uint32_t mesh);
+
+// The build of one mesh, in its part of the slots of all.
+BuildPlan mesh_plan(const InstancePlan& plan, std::uint32_t mesh);
+
+// The trees of these meshes; those of others stay as they are. So where meshes deform, only those that did
+// are built again, and append_top follows.
+void append_meshes(Chain& chain, const InstancePlan& plan, std::span<const std::uint32_t> meshes);
+void append_all_meshes(Chain& chain, const InstancePlan& plan);
+
+// Transforms of a swarm (stage move_instances) at `turn`, in parts of a cycle of 2^32. Its radius is
+// 2^exponent, from -126 to 127, else std::invalid_argument.
+void append_moves(Chain& chain, const InstancePlan& plan, std::uint32_t seed, std::uint32_t turn,
+                  int exponent);
+
+// From transforms, and the trees of the meshes, to the tree over the instances.
+void append_top(Chain& chain, const InstancePlan& plan);
+
+// The closest hits of the first `ray_count` rays, improved in place, with their instances. Of the options
+// max_turns and stack_entries matter: the stack takes the heights of both levels. Throws
+// std::invalid_argument for any but the watertight and the robust test, and for a filter.
+void append_instance_hits(Chain& chain, const InstancePlan& plan, const RaySlots& slots,
+                          const Slot<uint>& hit_instances, std::uint32_t ray_count,
+                          const TraceOptions& options, std::uint32_t first_ray = 0);
+
+}  // namespace coppice
