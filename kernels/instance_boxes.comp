@@ -1,6 +1,6 @@
-// In:  transforms, and the trees of the meshes. Out: the box of each instance in the world, which holds its every corner as
-// rounded, and what takes rays to the space of its mesh. Multiplications, additions and comparisons only.
-// An instance of no mesh, of one without active triangles, or by a transform that is not finite is inactive.
+// In:  transforms, and the trees of the meshes. Out: the box of each instance in the world, which holds its every
+// corner as rounded, and what takes rays to the space of its mesh. Multiplications, additions and comparisons only. An
+// instance of no mesh, of one without active triangles, or by a transform that is not finite is inactive.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/instances.h"
@@ -15,18 +15,19 @@ Aabb no_box() { return Aabb(vec3(uintBitsToFloat(0x7f800000u)), vec3(uintBitsToF
 // The height of its tree; 0 for an inactive one.
 uint place(uint i) {
   uint mesh = args.mesh_index.at[i];
-  Transform by = transform_of(args.transforms.at[i]);
+  Transform by = load_transform(args.transforms, i);
   bool is_active = mesh < args.mesh_count && finite(by);
   if (is_active) is_active = args.mesh_states.at[mesh].active_count != 0u;
   if (!is_active) {
     store_box(args.boxes, i, no_box());
-    args.placed.at[i] = PlacedInstance(vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), NO_INSTANCE);
+    store_placed(args.placed, i,
+                 PlacedInstance(vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0, vec3(0.0), NO_INSTANCE));
     return 0u;
   }
   Node root = load_node(args.mesh_nodes, args.meshes.at[mesh].first_node);
   Aabb box = Aabb(root.box_min, root.box_max);
   store_box(args.boxes, i, transformed_box(by, box));
-  args.placed.at[i] = placed_instance(by, box, mesh);
+  store_placed(args.placed, i, placed_instance(by, box, mesh));
   return root.height;
 }
 

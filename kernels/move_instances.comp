@@ -1,5 +1,5 @@
-// In:  a time. Out: the transforms of a swarm of instances, which circle the axis y and tumble. Multiplications, additions
-// and integers only, in a fixed order: the same bits on every device.
+// In:  a time. Out: the transforms of a swarm of instances, which circle the axis y and tumble. Multiplications,
+// additions and integers only, in a fixed order: the same bits on every device.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/instances.h"

@@ -1,6 +1,6 @@
-// In:  a BVH2 over instances, those of their meshes, and rays. Out: the closest hit of each, as instance and triangle: that
-// of the triangles that gather_triangles makes of each mesh by each transform. The heights of the trees are checked against
-// the stack.
+// In:  a BVH2 over instances, those of their meshes, and rays. Out: the closest hit of each, as instance and triangle:
+// that of the triangles that gather_triangles makes of each mesh by each transform. The heights of the trees are
+// checked against the stack.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/instances.h"

@@ -13,6 +13,8 @@
 #include "stages/gpu_executor.h"
 #include "stages/lockstep_executor.h"
 #include "support/device_run.h"
+#include "support/rays.h"
+#include "support/traced_instances.h"
 #include "support/wide.h"
 
 namespace coppice {
@@ -147,6 +149,25 @@ TEST_F(LikeAGpu, SameTreesOfABatch) {
     const auto tree = std::span(nodes).subspan(2 * std::size_t{range.first}, alone.nodes.size());
     EXPECT_EQ(tree_hash(tree), tree_hash(alone.nodes)) << range.count;
   }
+}
+
+TEST_F(LikeAGpu, SameHitsOfInstances) {
+  const InstancesToTrace scene = soups(200, 2, 1);
+  const std::vector<Triangle> triangles = flattened(scene);
+  const std::vector<Ray> rays = rays_at_edges(triangles, 2000, 2);
+  const auto traced_on = [&](Device& on) {
+    Layout layout(on.properties().max_block_bytes);
+    const InstanceSlots slots = plan_for(layout, scene, rays.size());
+    GpuExecutor executor(on, layout);
+    upload_instances(executor, slots, scene, rays);
+    Chain chain = executor.chain();
+    append_all(chain, slots, test_trace_options(1, 1));
+    executor.record(chain.steps()).submit_and_wait(submit_limit_seconds);
+    return std::pair(executor.read(slots.rays.hits), executor.read(slots.hit_instances));
+  };
+  const auto here = traced_on(test_device()), there = traced_on(device());
+  EXPECT_EQ(compare_hits(here.first, there.first).count, 0u);
+  EXPECT_EQ(here.second, there.second);
 }
 
 TEST_F(LikeAGpu, WideNodesOfADeepTree) {

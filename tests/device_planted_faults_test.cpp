@@ -195,11 +195,16 @@ Found run_instances(Device& device, const Spoil& spoil) {
   }
   Layout layout(device.properties().max_block_bytes);
   const InstanceSlots slots = plan_for(layout, scene, rays.size());
+  PlacedHitSlots placed = plan_placed_hits(layout, slots.plan, static_cast<std::uint32_t>(rays.size()));
+  placed.hit_instances = slots.hit_instances;
   LockstepExecutor executor(device, layout);
   upload_instances(executor, slots, scene, rays);
+  const std::vector<uint> materials(placed.mesh_materials.count, 5);
+  executor.upload(placed.mesh_materials, std::span<const uint>(materials));
   auto difference = executor.run([&](Chain& chain) {
     append_moves(chain, slots.plan, 1, 12345, 1);
     append_all(chain, slots, test_trace_options(1, 1));
+    append_placed_hits(chain, slots.plan, slots.rays, placed, 0, static_cast<std::uint32_t>(rays.size()));
     spoil(chain.steps(), executor);
   });
   return {std::move(difference), {executor.nearly().begin(), executor.nearly().end()}};

@@ -22,14 +22,14 @@ class BenchCommand : public Command {
     app.add_option("SCENE", options_.scenes,
                    "of the trace; default: grove and hard:detail-on-ground; of the refit; default: scatter")
         ->expected(1);
-    app.add_option("--most", options_.most, "words, keys or triangles of the largest size")
+    app.add_option("--most", options_.most, "words, keys, triangles or instances of the largest size")
         ->check(CLI::Range(4u, 1u << 26))
         ->capture_default_str();
     app.add_option("--only", options_.only, "only rows of whose name and input this is a part")
         ->type_name("TEXT[,TEXT...]")
         ->delimiter(',');
     app.add_option("--builder", options_.builders,
-                   "of build, refit and trace; default: all, gpu-ploc for trace")
+                   "of build, refit, trace and instances; default: all, gpu-ploc for trace")
         ->delimiter(',')
         ->check(CLI::IsMember(device_builder_names()));
     add_runs(app, options_.runs, "that count, after a warm-up until the median is stable");
@@ -42,19 +42,20 @@ class BenchCommand : public Command {
   void check(const CLI::App& app) override {
     parse_view(picture_);
     const bool traces = what_ == "trace", refits = what_ == "refit";
-    const bool builds = what_ == "build" || refits || traces;
+    const bool instances = what_ == "instances", sees = traces || instances;
+    const bool builds = what_ == "build" || refits || sees;
     const bool has_trees = what_ == "ploc" || builds;
-    check_options_matter(
-        app, {{"SCENE", traces || refits, "bench trace or refit"},
-              {"--size", traces, "bench trace"},
-              {"--camera", traces, "bench trace"},
-              {"--up", traces || refits, "bench trace or refit"},
-              {"--builder", builds, "bench build, refit or trace"},
-              {"--radius", has_trees, "bench ploc, build, refit or trace"},
-              {"--morton-bits", has_trees, "bench ploc, build, refit or trace"},
-              {"--variants", has_trees || what_ == "sort", "bench sort, ploc, build, refit or trace"},
-              {"--most", !traces && !(refits && !options_.scenes.empty()),
-               "bench sort, scan, ploc, build or refit"}});
+    check_options_matter(app, {{"SCENE", traces || refits, "bench trace or refit"},
+                               {"--size", sees, "bench trace or instances"},
+                               {"--camera", sees, "bench trace or instances"},
+                               {"--up", traces || refits, "bench trace or refit"},
+                               {"--builder", builds, "bench build, refit, trace or instances"},
+                               {"--radius", has_trees, "bench ploc, build, refit, trace or instances"},
+                               {"--morton-bits", has_trees, "bench ploc, build, refit, trace or instances"},
+                               {"--variants", has_trees || what_ == "sort",
+                                "bench sort, ploc, build, refit, trace or instances"},
+                               {"--most", !traces && !(refits && !options_.scenes.empty()),
+                                "bench sort, scan, ploc, build, refit or instances"}});
   }
 
   std::vector<std::string> scenes() const override { return options_.scenes; }

@@ -76,6 +76,7 @@ class RenderCommand : public Command {
     FrameSurroundings around{.tracer = tracer_, .output = files.picture};
     const auto load_start = Clock::now();
     const bool on_device = traces_on_device() || builder_.on_device();
+    scene_.keep_instances = traces_instances();
     const Scene scene = open_scene_of(scene_, builder_, device_, on_device);
     around.load_ms = ms_since(load_start);
 
@@ -101,6 +102,13 @@ class RenderCommand : public Command {
  private:
   bool traces_on_device() const { return tracer_ == "gpu"; }
 
+  // Otherwise instances are flattened: only the binary walk of trees of the device knows two levels.
+  bool traces_instances() const {
+    const WalkChoice& walk = device_.choices.walk;
+    return traces_on_device() && builder_.on_device() && !walk.any_wide &&
+           walk.walk.value_or(Walk::binary) == Walk::binary && can_trace_wide(picture_.trace);
+  }
+
   DeviceUse use_for(const Scene& scene) const {
     DeviceUse use{.builds = builder_.on_device() != nullptr,
                   .build = builder_.least_build_options(),
@@ -113,6 +121,7 @@ class RenderCommand : public Command {
   FrameReport measured(CheckedDevice* device, const Scene& scene, FrameRuns& frame) const {
     if (!traces_on_device()) return measure_host_frame(device, scene, frame, print_note);
     frame.trace = device->picture_options(frame.trace, static_cast<std::uint32_t>(scene.indices.size()));
+    if (!scene.instances.empty()) frame.trace.walk = Walk::binary;
     return measure_frame(*device, scene, frame);
   }
 

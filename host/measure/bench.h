@@ -72,6 +72,7 @@ void bench_ploc(CheckedDevice& device, const BenchOptions& options, const AddRow
 void bench_build(CheckedDevice& device, const BenchOptions& options, const AddRow& add);
 void bench_refit(CheckedDevice& device, const BenchOptions& options, const AddRow& add);
 void bench_trace(CheckedDevice& device, const BenchOptions& options, const AddRow& add);
+void bench_instances(CheckedDevice& device, const BenchOptions& options, const AddRow& add);
 
 // One row of bench_sort; `count` is a multiple of 4, `preset` one of its kinds of keys.
 BenchRow bench_keys(CheckedDevice& device, const BenchOptions& options, std::uint32_t count,

@@ -90,9 +90,9 @@ Json to_json(const Table& table, std::span<const BenchRow> rows) {
 }
 
 std::span<const NamedBench> benches() {
-  static constexpr NamedBench list[] = {{"sort", bench_sort},   {"scan", bench_scan},
-                                        {"ploc", bench_ploc},   {"build", bench_build},
-                                        {"refit", bench_refit}, {"trace", bench_trace}};
+  static constexpr NamedBench list[] = {
+      {"sort", bench_sort},   {"scan", bench_scan},   {"ploc", bench_ploc},          {"build", bench_build},
+      {"refit", bench_refit}, {"trace", bench_trace}, {"instances", bench_instances}};
   return list;
 }
 

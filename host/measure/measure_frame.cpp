@@ -42,8 +42,8 @@ Pace warm_up(GpuExecutor& executor, const TreeSteps& steps, const FramePlan& pla
   few.image.count = std::min<std::uint64_t>(trace.image.count, middle + RANGE_RAYS);
   const Pace unknown(submit_target_ms(device), first_work(trace.options));
   Pace compiling = unknown, pace = unknown;
-  submit_pieces(executor, TracePieces(plan.tree, few, middle), compiling, Timestamps::total, [](auto&&) {});
-  TracePieces pieces(plan.tree, trace, middle);
+  submit_pieces(executor, plan.pieces(few, middle), compiling, Timestamps::total, [](auto&&) {});
+  TracePieces pieces = plan.pieces(trace, middle);
   const double enough_ms = pace.target_ms() / 20;
   for (double ms = 0; !pieces.done() && ms < enough_ms;)
     ms += submit_piece(executor, pieces, pace, Timestamps::total).times.wall_ms;
@@ -78,7 +78,7 @@ void measure_frames(GpuExecutor& executor, const TreeSteps& steps, const FramePl
     }
     if (plan.wide) wide_ms.push_back(wide.submit_and_wait(piece_limit_seconds).total_ms);
     double& ms = trace_ms.emplace_back(0);
-    submit_pieces(executor, TracePieces(plan.tree, plan.trace), pace, Timestamps::total,
+    submit_pieces(executor, plan.pieces(plan.trace), pace, Timestamps::total,
                   [&](const SubmittedPiece& piece) {
                     ms += piece.times.total_ms;
                     progress.add(piece.work);
@@ -106,7 +106,13 @@ RunCounts counts_of_tree(const GpuExecutor& executor, const FramePlan& plan) {
 void split_kernels(CheckedDevice& device, GpuExecutor& executor, const TreeSteps& steps,
                    const FramePlan& plan, Pace& pace, TraceProgress& progress,
                    const std::string& trace_events, FrameReport& report) {
+  // Of two levels the upper one: the counts that are left are its.
   std::vector<Step> tree_steps = steps.build;
+  if (plan.levels) {
+    Chain top = executor.chain();
+    append_top(top, plan.levels->plan);
+    tree_steps = top.steps();
+  }
   tree_steps.insert(tree_steps.end(), steps.wide.begin(), steps.wide.end());
   const RunCounts counts = counts_of_trace(executor.read(plan.trace.counters)[0]);
   TraceEvents events;
@@ -116,7 +122,7 @@ void split_kernels(CheckedDevice& device, GpuExecutor& executor, const TreeSteps
     tree_sums.add(split.steps, split.times, counts_of_tree(executor, plan));
     events.add(split);
   }
-  submit_pieces(executor, TracePieces(plan.tree, plan.trace), pace, Timestamps::every_step,
+  submit_pieces(executor, plan.pieces(plan.trace), pace, Timestamps::every_step,
                 [&](const SubmittedPiece& piece) {
                   sums.add(piece.steps, piece.times, counts);
                   if (!trace_events.empty()) events.add(piece.steps, piece.times);
@@ -181,7 +187,7 @@ FrameReport measure_frame(CheckedDevice& device, const Scene& scene, const Frame
   GpuExecutor executor(device.device(), layout);
   const Film film =
       make_film(scene, frame.camera, frame.trace.width, frame.trace.height, frame.trace.samples);
-  upload_frame(executor, plan.tree, plan.trace, arrays, film);
+  upload_frame(executor, plan, arrays, film);
   report.shown.options = frame.show;
   report.shown.scale =
       span_of(frame.show, film, box_of(arrays.triangles), options.trace.walk, arrays.triangle_count());
@@ -191,7 +197,7 @@ FrameReport measure_frame(CheckedDevice& device, const Scene& scene, const Frame
   const TreeSteps steps = tree_steps(executor, plan);
   Pace pace = warm_up(executor, steps, plan, device.properties());
   upload_shown(executor, plan, arrays, report);
-  TraceProgress progress(TracePieces(plan.tree, plan.trace).work(), frame.runs + frame.split);
+  TraceProgress progress(plan.pieces(plan.trace).work(), frame.runs + frame.split);
   measure_frames(executor, steps, plan, pace, frame.runs, progress, report);
   const RunCounts counts = counts_of_trace(executor.read(plan.trace.counters)[0]);
   report.rays = counts.rays;

@@ -112,4 +112,28 @@ void append_instance_hits(Chain& chain, const InstancePlan& plan, const RaySlots
             groups_of(ray_count, TRACE_GROUP), {options.max_turns, options.stack_entries});
 }
 
+PlacedHitSlots plan_placed_hits(Layout& layout, const InstancePlan& plan, std::uint32_t ray_count) {
+  return {layout.add<uint>("mesh_materials", plan.mesh_triangles.count, Memory::source),
+          layout.add<uint>("hit_instances", ray_count), layout.add<Triangle>("hit_triangles", ray_count),
+          layout.add<uint>("hit_materials", ray_count)};
+}
+
+void append_placed_hits(Chain& chain, const InstancePlan& plan, const RaySlots& slots,
+                        const PlacedHitSlots& placed, std::uint32_t first_ray, std::uint32_t ray_count) {
+  chain.run(stages::place_hits,
+            {chain.at(placed.hit_instances, first_ray), chain.at(plan.placed), chain.at(plan.transforms),
+             chain.at(plan.meshes), chain.at(plan.mesh_triangles), chain.at(placed.mesh_materials),
+             chain.at(slots.hits, first_ray), chain.at(placed.triangles, first_ray),
+             chain.at(placed.material_index, first_ray), ray_count, 0},
+            groups_of(ray_count, SHADE_GROUP));
+}
+
+std::uint64_t InstanceHitPieces::append(Chain& chain, std::uint64_t work) {
+  const std::uint64_t most = std::max<std::uint64_t>(work / RANGE_RAYS, 1) * RANGE_RAYS;
+  const auto count = static_cast<std::uint32_t>(std::min<std::uint64_t>(most, ray_count_ - first_));
+  append_instance_hits(chain, *plan_, slots_, hit_instances_, count, options_, first_);
+  first_ += count;
+  return count;
+}
+
 }  // namespace coppice

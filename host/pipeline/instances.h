@@ -65,4 +65,41 @@ void append_instance_hits(Chain& chain, const InstancePlan& plan, const RaySlots
                           const Slot<uint>& hit_instances, std::uint32_t ray_count,
                           const TraceOptions& options, std::uint32_t first_ray = 0);
 
+// What is shaded of hits of instances by stages of one level: a triangle and a material a ray.
+struct PlacedHitSlots {
+  Slot<uint> mesh_materials;  // in: one a triangle of InstancePlan::mesh_triangles
+  Slot<uint> hit_instances;
+  Slot<Triangle> triangles;
+  Slot<uint> material_index;
+};
+PlacedHitSlots plan_placed_hits(Layout& layout, const InstancePlan& plan, std::uint32_t ray_count);
+
+// Of the hits of rays that follow each other; see PlaceHitsArgs.
+void append_placed_hits(Chain& chain, const InstancePlan& plan, const RaySlots& slots,
+                        const PlacedHitSlots& placed, std::uint32_t first_ray, std::uint32_t ray_count);
+
+// The closest hits of the first rays of their slots, cut as HitPieces are.
+class InstanceHitPieces {
+ public:
+  InstanceHitPieces(const InstancePlan& plan, const RaySlots& slots, const Slot<uint>& hit_instances,
+                    std::uint32_t ray_count, const TraceOptions& options)
+      : plan_(&plan),
+        slots_(slots),
+        hit_instances_(hit_instances),
+        options_(options),
+        ray_count_(ray_count) {}
+
+  bool done() const { return first_ == ray_count_; }
+
+  // As HitPieces::append.
+  std::uint64_t append(Chain& chain, std::uint64_t work);
+
+ private:
+  const InstancePlan* plan_;  // outlives it
+  RaySlots slots_;
+  Slot<uint> hit_instances_;
+  TraceOptions options_;
+  std::uint32_t ray_count_, first_ = 0;
+};
+
 }  // namespace coppice

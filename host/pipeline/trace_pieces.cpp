@@ -77,18 +77,35 @@ void TracePieces::open_range(Chain& chain, std::uint64_t work) {
             groups_of(range_.count, CAMERA_RAYS_GROUP));
 }
 
+// Those of instances in one step.
+std::uint64_t TracePieces::append_hits(Chain& chain, std::uint64_t work) {
+  if (!levels_) return append_closest_hits(chain, tree_, plan_, range_, plan_.options, work);
+  append_instance_hits(chain, levels_->plan, plan_, levels_->hits.hit_instances, range_.count, plan_.options,
+                       range_.first);
+  range_.next_triangle = std::max(tree_.triangle_count, 1u);
+  return range_.count;
+}
+
+// Of instances a triangle and a material each ray.
+TracePieces::Surfaces TracePieces::surfaces(const Chain& chain) const {
+  if (!levels_) return {chain.at(tree_.triangles), chain.at(plan_.material_index)};
+  return {chain.at(levels_->hits.triangles, range_.first),
+          chain.at(levels_->hits.material_index, range_.first)};
+}
+
 void TracePieces::append_shade(Chain& chain, Vec3Buffer radiance) const {
+  const auto [triangles, material_index] = surfaces(chain);
   chain.run(stages::shade,
-            {chain.at(tree_.triangles), chain.at(plan_.material_index), chain.at(plan_.materials),
-             chain.at(plan_.lighting), chain.at(plan_.rays, range_.first), chain.at(plan_.hits, range_.first),
-             radiance, range_.count, sample_},
+            {triangles, material_index, chain.at(plan_.materials), chain.at(plan_.lighting),
+             chain.at(plan_.rays, range_.first), chain.at(plan_.hits, range_.first), radiance, range_.count,
+             sample_},
             groups_of(range_.count, SHADE_GROUP), {plan_.options.directional_light});
 }
 
 void TracePieces::append_show(Chain& chain, Vec3Buffer radiance) const {
   const ShowSlots& show = plan_.show;
   chain.run(stages::show,
-            {chain.at(tree_.triangles), chain.at(plan_.hits, range_.first),
+            {surfaces(chain).triangles, chain.at(plan_.hits, range_.first),
              address_or_null(chain, plan_.ray_steps, range_.first),
              address_or_null(chain, show.primitive_values), chain.at(show.colour_map), chain.at(show.scale),
              chain.at(show.range), radiance, range_.count, sample_, plan_.options.show, 0},
@@ -96,12 +113,12 @@ void TracePieces::append_show(Chain& chain, Vec3Buffer radiance) const {
 }
 
 void TracePieces::append_pixels(Chain& chain) const {
-  chain.run(
-      stages::shade_pixels,
-      {chain.at(plan_.film), chain.at(tree_.triangles), chain.at(plan_.material_index),
-       chain.at(plan_.materials), chain.at(plan_.lighting), chain.at(plan_.hits, range_.first),
-       chain.at(plan_.srgb_thresholds), chain.at(plan_.image), band_first_ + range_.first, range_.count},
-      groups_of(range_.count, SHADE_PIXELS_TILE), {plan_.options.directional_light});
+  const auto [triangles, material_index] = surfaces(chain);
+  chain.run(stages::shade_pixels,
+            {chain.at(plan_.film), triangles, material_index, chain.at(plan_.materials),
+             chain.at(plan_.lighting), chain.at(plan_.hits, range_.first), chain.at(plan_.srgb_thresholds),
+             chain.at(plan_.image), band_first_ + range_.first, range_.count},
+            groups_of(range_.count, SHADE_PIXELS_TILE), {plan_.options.directional_light});
 }
 
 void TracePieces::append_radiance(Chain& chain) const {
@@ -119,6 +136,7 @@ void TracePieces::append_radiance(Chain& chain) const {
 }
 
 void TracePieces::close_range(Chain& chain) {
+  if (levels_) append_placed_hits(chain, levels_->plan, plan_, levels_->hits, range_.first, range_.count);
   if (keeps_radiance(plan_.options))
     append_radiance(chain);
   else
@@ -138,7 +156,7 @@ std::uint64_t TracePieces::append(Chain& chain, std::uint64_t work) {
   std::uint64_t appended = 0;
   while (!done() && has_room(tree_, plan_.options, appended, work)) {
     if (range_.count == 0) open_range(chain, work - appended);
-    appended += append_closest_hits(chain, tree_, plan_, range_, plan_.options, work - appended);
+    appended += append_hits(chain, work - appended);
     if (!has_closest_hits(tree_, range_, plan_.options)) break;
     close_range(chain);
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "pipeline/instances.h"
 #include "pipeline/trace_any.h"
 #include "pipeline/trace_plan.h"
 
@@ -61,12 +62,20 @@ class AnyHitPieces {
   std::uint32_t ray_count_;
 };
 
+// Instances, and what is shaded of their hits.
+struct TwoLevels {
+  InstancePlan plan;
+  PlacedHitSlots hits;  // of a band's rays
+};
+
 // A picture: camera rays, closest hits, shading or what is shown in its place, sRGB.
 class TracePieces {
  public:
   // `first_pixel`: those before it, in the order of FILM_STRIP, are left out; a multiple of RANGE_RAYS.
-  TracePieces(const TreeSlots& tree, const TracePlan& plan, std::uint32_t first_pixel = 0)
-      : tree_(tree), plan_(plan), band_first_(first_pixel) {}
+  // `levels`: of instances, whose tree `tree` then is; null: of triangles.
+  TracePieces(const TreeSlots& tree, const TracePlan& plan, std::uint32_t first_pixel = 0,
+              const TwoLevels* levels = nullptr)
+      : tree_(tree), plan_(plan), levels_(levels), band_first_(first_pixel) {}
 
   bool done() const { return band_first_ >= plan_.image.count; }
   std::uint64_t work() const {
@@ -78,8 +87,15 @@ class TracePieces {
 
  private:
   std::uint32_t band_rays() const;
+  std::uint64_t append_hits(Chain& chain, std::uint64_t work);
   void open_range(Chain& chain, std::uint64_t work);
   void close_range(Chain& chain);
+  // What hits of this range name.
+  struct Surfaces {
+    TriangleBuffer triangles;
+    UintBuffer material_index;
+  };
+  Surfaces surfaces(const Chain& chain) const;
   void append_pixels(Chain& chain) const;
   void append_radiance(Chain& chain) const;
   void append_shade(Chain& chain, Vec3Buffer radiance) const;
@@ -87,6 +103,7 @@ class TracePieces {
 
   TreeSlots tree_;
   TracePlan plan_;
+  const TwoLevels* levels_;  // outlive it
   bool cleared_ = false;
   std::uint32_t band_first_;  // pixel; a band goes through all its samples before the next one
   std::uint32_t sample_ = 0;

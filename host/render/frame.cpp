@@ -1,12 +1,39 @@
 #include "render/frame.h"
 
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "gpu/device.h"
 
 namespace coppice {
 
+namespace {
+
+FramePlan plan_instanced_frame(Layout& layout, const SceneArrays& scene, const FrameOptions& options) {
+  if (!options.build || options.trace.walk != Walk::binary)
+    throw std::invalid_argument("instances are built on the device and walked through binary trees");
+  std::vector<std::uint32_t> counts;
+  for (const InstancedMesh& mesh : scene.meshes) counts.push_back(mesh.triangle_count);
+  FramePlan plan;
+  plan.levels.emplace();
+  InstancePlan& instances = plan.levels->plan;
+  instances =
+      plan_instances(layout, counts, static_cast<std::uint32_t>(scene.mesh_index.size()), *options.build);
+  plan.build = instances.top;
+  plan.tree = instances.top;
+  TreeSlots no_triangles = plan.tree;
+  no_triangles.triangle_count = 0;  // each ray has a material of its own
+  plan.trace =
+      plan_trace(layout, no_triangles, static_cast<std::uint32_t>(scene.materials.size()), options.trace);
+  plan.levels->hits = plan_placed_hits(layout, instances, plan.trace.band_rays);
+  return plan;
+}
+
+}  // namespace
+
 FramePlan plan_frame(Layout& layout, const SceneArrays& scene, const FrameOptions& options) {
+  if (!scene.mesh_index.empty()) return plan_instanced_frame(layout, scene, options);
   FramePlan plan;
   if (options.build) plan.build = plan_build(layout, scene.triangle_count(), *options.build);
   if (!options.build) plan.tree = plan_tree(layout, scene.triangle_count(), options.node_count);
@@ -20,7 +47,16 @@ FramePlan plan_frame(Layout& layout, const SceneArrays& scene, const FrameOption
 }
 
 void append_frame_build(Chain& chain, const FramePlan& plan) {
-  if (plan.build) append_build(chain, *plan.build);
+  if (plan.levels) {
+    append_frame_meshes(chain, plan);
+    append_top(chain, plan.levels->plan);
+  } else if (plan.build) {
+    append_build(chain, *plan.build);
+  }
+}
+
+void append_frame_meshes(Chain& chain, const FramePlan& plan) {
+  if (plan.levels) append_all_meshes(chain, plan.levels->plan);
 }
 
 void append_frame_wide(Chain& chain, const FramePlan& plan) {
@@ -30,7 +66,8 @@ void append_frame_wide(Chain& chain, const FramePlan& plan) {
 void append_frame(Chain& chain, const FramePlan& plan) {
   append_frame_build(chain, plan);
   append_frame_wide(chain, plan);
-  append_trace(chain, plan.tree, plan.trace);
+  TracePieces pieces = plan.pieces(plan.trace);
+  while (!pieces.done()) pieces.append(chain, ~std::uint64_t{0});
 }
 
 void check_height(const Bvh& bvh) {

@@ -4,14 +4,15 @@
 #include <span>
 
 #include "builders/bvh.h"
-#include "pipeline/trace_plan.h"
+#include "pipeline/trace_pieces.h"
 #include "pipeline/wide_plan.h"
 #include "render/film.h"
 #include "render/scene_arrays.h"
 
 namespace coppice {
 
-// A frame: a tree, built on the device or handed over by the host, and a picture traced through it.
+// A frame: a tree, built on the device or handed over by the host, and a picture traced through it. Of a
+// scene with instances two levels, which only the device builds and only the binary walk takes.
 struct FrameOptions {
   std::optional<BuildOptions> build{};  // none: the tree is uploaded
   std::uint64_t node_count = 0;         // of the uploaded tree
@@ -21,16 +22,25 @@ struct FrameOptions {
 struct FramePlan {
   std::optional<BuildPlan> build;
   std::optional<WidePlan> wide;
+  std::optional<TwoLevels> levels;  // then `build` is that of the tree over the instances
   TreeSlots tree;
   TracePlan trace;
+
+  TracePieces pieces(const TracePlan& of, std::uint32_t first_pixel = 0) const {
+    return {tree, of, first_pixel, levels ? &*levels : nullptr};
+  }
 };
 
-// Throws LayoutError if a slot does not fit a block.
+// Throws LayoutError if a slot does not fit a block, and std::invalid_argument for instances with a tree of
+// the host or a wide one.
 FramePlan plan_frame(Layout& layout, const SceneArrays& scene, const FrameOptions& options);
 
 // The parts of a frame: nothing where there is nothing to do.
 void append_frame_build(Chain& chain, const FramePlan& plan);
 void append_frame_wide(Chain& chain, const FramePlan& plan);
+
+// Of two levels the trees of the meshes, which append_frame_build begins with.
+void append_frame_meshes(Chain& chain, const FramePlan& plan);
 
 // All of it: triangles to picture.
 void append_frame(Chain& chain, const FramePlan& plan);
@@ -46,6 +56,29 @@ void upload_frame(Executor& executor, const TreeSlots& tree, const TracePlan& tr
   executor.upload(trace.lighting, std::span<const Lighting>(&scene.lighting, 1));
   executor.upload(trace.film, std::span<const Film>(&film, 1));
   executor.upload(trace.srgb_thresholds, std::span<const uint>(thresholds));
+}
+
+// The same of a frame with or without instances.
+template <class Executor>
+void upload_frame(Executor& executor, const FramePlan& plan, const SceneArrays& scene, const Film& film) {
+  if (!plan.levels) return upload_frame(executor, plan.tree, plan.trace, scene, film);
+  SceneArrays no_triangles;
+  no_triangles.materials = scene.materials;
+  no_triangles.lighting = scene.lighting;
+  upload_frame(executor, plan.tree, plan.trace, no_triangles, film);
+  const InstancePlan& instances = plan.levels->plan;
+  executor.upload(instances.meshes, std::span<const MeshRange>(instances.ranges));
+  for (std::uint32_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
+    const auto [first, count] = scene.meshes[mesh];
+    const auto materials = std::span<const uint>(scene.material_index).subspan(first, count);
+    Slot<uint> own{plan.levels->hits.mesh_materials.place, count};
+    own.place.offset += sizeof(uint) * instances.ranges[mesh].first_triangle;
+    executor.upload(triangles_of(instances, mesh),
+                    std::span<const Triangle>(scene.triangles).subspan(first, count));
+    executor.upload(own, materials);
+  }
+  executor.upload(instances.mesh_index, std::span<const uint>(scene.mesh_index));
+  executor.upload(instances.transforms, std::span<const InstanceTransform>(scene.transforms));
 }
 
 // Throws DeviceError for a tree that is higher than tracers on the device take.

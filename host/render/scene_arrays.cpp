@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "scene/instances.h"
+
 namespace coppice {
 
 namespace {
@@ -30,6 +32,11 @@ SceneArrays scene_arrays(const Scene& scene) {
                                 material.diffuse * scene.light.radiance});
   }
   arrays.lighting = {scene.light.direction, 0, vec3(0.80f, 0.87f, 0.94f), 0, vec3(0.24f, 0.45f, 0.78f), 0};
+  arrays.meshes = scene.meshes;
+  for (const Instance& instance : scene.instances) {
+    arrays.mesh_index.push_back(instance.mesh);
+    arrays.transforms.push_back(rows_of(instance.transform));
+  }
   return arrays;
 }
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "interface/trace.h"
+#include "interface/instances.h"
 #include "scene/scene.h"
 
 namespace coppice {
@@ -13,6 +13,10 @@ struct SceneArrays {
   std::vector<uint> material_index;
   std::vector<SurfaceMaterial> materials;
   Lighting lighting = {};
+  // Of a scene with instances: its meshes, and of each instance the mesh and the transform.
+  std::vector<InstancedMesh> meshes;
+  std::vector<uint> mesh_index;
+  std::vector<InstanceTransform> transforms;
 
   std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(triangles.size()); }
 };

@@ -106,12 +106,12 @@ Scene open_scene_with_room(const SceneOptions& options, const DeviceOptions* dev
                            const std::optional<BuildOptions>& build,
                            const std::function<void(const std::string&)>& note) {
   const std::optional<SceneSize> size = built_in_size(options.spec);
-  if (size && size->triangles > small_triangles) {
+  if (size && size->triangles > small_triangles && !options.keep_instances) {
     std::optional<Device> opened;
     if (device) opened.emplace(DeviceOptions{.select = device->select});
     check_room(options.spec, {opened ? &*opened : nullptr, build}, note);
   }
-  return open_scene(options.spec, options.up);
+  return open_scene(options.spec, options.up, options.keep_instances);
 }
 
 }  // namespace coppice

@@ -6,11 +6,14 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "scene/instances.h"
+
 namespace coppice {
 namespace {
 
 template <class Counts>
 Bounds bounds_of(const Scene& scene, Counts counts) {
+  if (!scene.instances.empty()) return bounds_of(boxes_of_instances(scene), counts);
   const auto add_triangles = [&](const tbb::blocked_range<std::size_t>& range, Bounds bounds) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       const glm::uvec3 triangle = scene.indices[i];

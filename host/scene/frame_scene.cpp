@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "scene/bounds.h"
+#include "scene/instances.h"
 #include "scene/motion.h"
 #include "scene/scene.h"
 
@@ -50,6 +51,7 @@ std::vector<Scene> later_moments(const Scene& scene) {
 
 Camera frame_scene(const Scene& scene, float aspect) {
   if (scene.camera) return *scene.camera;
+  if (!scene.instances.empty()) return frame_scene(boxes_of_instances(scene), aspect);
 
   Camera camera;
   const glm::dvec3 toward_camera = glm::normalize(glm::dvec3{0.55, 0.42, 0.83});

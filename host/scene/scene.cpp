@@ -46,13 +46,14 @@ void bring_into_range(Scene& scene) {
   if (largest == 0 || (largest >= 0x1p-30 && largest <= 0x1p30)) return;
   const int exponent = 30 - std::ilogb(largest);
   const auto scale = [exponent](float x) { return static_cast<float>(std::ldexp(double{x}, exponent)); };
-  for (glm::vec3& position : scene.positions) {
-    position = {scale(position.x), scale(position.y), scale(position.z)};
+  const auto scale_point = [&](glm::vec3& p) { p = {scale(p.x), scale(p.y), scale(p.z)}; };
+  if (scene.instances.empty()) std::ranges::for_each(scene.positions, scale_point);
+  for (Instance& instance : scene.instances) {
+    for (int column = 0; column < 4; ++column) scale_point(instance.transform[column]);
   }
   if (scene.camera) {
-    for (glm::vec3* const point : {&scene.camera->position, &scene.camera->target}) {
-      *point = {scale(point->x), scale(point->y), scale(point->z)};
-    }
+    scale_point(scene.camera->position);
+    scale_point(scene.camera->target);
   }
   scene.scale_exponent += exponent;
   const double factor = std::ldexp(1.0, exponent);
@@ -62,7 +63,10 @@ void bring_into_range(Scene& scene) {
 void stand_up(Scene& scene, std::string_view up) {
   if (up == "y") return;
   const glm::mat3 turn = turn_of(up);
-  for (glm::vec3& position : scene.positions) position = turn * position;
+  if (scene.instances.empty()) {
+    for (glm::vec3& position : scene.positions) position = turn * position;
+  }
+  for (Instance& instance : scene.instances) instance.transform = turn * instance.transform;
   scene.turn = turn * scene.turn;
   move_to_scene(scene, glm::dmat4(glm::dmat3(turn)));
   scene.camera.reset();

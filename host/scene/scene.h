@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/mat3x3.hpp>
+#include <glm/mat4x3.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
@@ -42,6 +43,17 @@ struct Camera {
   float vertical_fov_degrees = 40.0f;
 };
 
+// Triangles that follow each other in a scene and are seen where instances of them are.
+struct InstancedMesh {
+  std::uint32_t first_triangle = 0, triangle_count = 0;
+};
+
+// A mesh in its place, see scene/instances.h.
+struct Instance {
+  std::uint32_t mesh = 0;       // into Scene::meshes; always in range
+  glm::mat4x3 transform{1.0f};  // from the space of the mesh to the scene; any floats
+};
+
 struct Motion;  // scene/motion.h
 
 // An indexed triangle mesh with what it takes to light and see it. +y is up; the unit of length is the
@@ -51,11 +63,15 @@ struct Scene {
   std::string name;
   std::vector<glm::vec3> positions;
   // How they came from the file's coordinates, in this order (to_scene):
-  glm::dvec3 offset{0.0};                          // subtracted, see load_obj
-  glm::mat3 turn{1.0f};                            // then turned, see stand_up
-  int scale_exponent = 0;                          // and multiplied by 2^scale_exponent, see bring_into_range
-  std::vector<glm::uvec3> indices;                 // one per triangle, into positions; always in range
-  std::vector<std::uint32_t> material_index;       // one per triangle, into materials; always in range
+  glm::dvec3 offset{0.0};                     // subtracted, see load_obj
+  glm::mat3 turn{1.0f};                       // then turned, see stand_up
+  int scale_exponent = 0;                     // and multiplied by 2^scale_exponent, see bring_into_range
+  std::vector<glm::uvec3> indices;            // one per triangle, into positions; always in range
+  std::vector<std::uint32_t> material_index;  // one per triangle, into materials; always in range
+  // With instances only these are seen, and all triangles belong to meshes; without, the triangles as they
+  // are.
+  std::vector<InstancedMesh> meshes;
+  std::vector<Instance> instances;
   std::vector<Material> materials = {Material{}};  // never empty
   std::optional<Camera> camera;                    // absent: frame_scene chooses one
   DirectionalLight light;

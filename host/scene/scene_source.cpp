@@ -10,6 +10,7 @@
 #include "scene/generators.h"
 #include "scene/hard_cases.h"
 #include "scene/input_error.h"
+#include "scene/instances.h"
 #include "scene/load_gltf.h"
 #include "scene/load_obj.h"
 #include "scene/load_ply.h"
@@ -24,6 +25,7 @@ namespace {
 constexpr std::uint32_t SCATTER_DEFAULT = 1'000'000;
 constexpr std::uint32_t TERRAIN_DEFAULT = 500'000;
 constexpr std::uint32_t MOVING_DEFAULT = 100'000;
+constexpr std::uint32_t INSTANCES_DEFAULT = 10'000;
 
 // "name:rest" as its two parts; no second part where there is no colon.
 struct NameAndRest {
@@ -38,14 +40,15 @@ NameAndRest split(std::string_view spec) {
 }
 
 std::uint32_t parse_count(const std::string& spec, std::optional<std::string_view> text,
-                          std::uint32_t otherwise) {
+                          std::uint32_t otherwise, std::string_view of = "triangles") {
   if (!text) return otherwise;
   std::uint32_t count = 0;
   const char* const end = text->data() + text->size();
   const auto [parsed_end, error] = std::from_chars(text->data(), end, count);
   if (parsed_end != end || error != std::errc{} || count == 0 || count > MAX_GENERATED_TRIANGLES) {
     throw InputError("scene '" + printable(std::string_view(spec)) + "': '" + printable(*text) +
-                     "' is no number of triangles from 1 to " + std::to_string(MAX_GENERATED_TRIANGLES));
+                     "' is no number of " + std::string(of) + " from 1 to " +
+                     std::to_string(MAX_GENERATED_TRIANGLES));
   }
   return count;
 }
@@ -102,6 +105,11 @@ std::optional<BuiltIn> find_built_in(const std::string& spec) {
   if (name == "terrain") {
     const std::uint32_t count = parse_count(spec, text, TERRAIN_DEFAULT);
     return BuiltIn{{count, count / 2 + 1}, [=] { return make_terrain(count); }};
+  }
+  if (name == "instances") {
+    const std::uint32_t count = parse_count(spec, text, INSTANCES_DEFAULT, "instances");
+    const std::uint64_t triangles = swarm_triangles(count);
+    return BuiltIn{{triangles, 3 * triangles}, [=] { return make_instances(count); }};
   }
   if (name == "moving") {
     const std::uint32_t count = parse_count(spec, text, MOVING_DEFAULT);
@@ -170,7 +178,9 @@ std::vector<SceneListing> list_scenes() {
       {"grove", "a coppiced wood: stools, shoots, rocks and felled logs", grove_triangles, false},
       {"scatter", "clusters of unconnected triangles of all sizes, for benchmarks", SCATTER_DEFAULT, true},
       {"terrain", "one connected height field", TERRAIN_DEFAULT, true},
-      {"moving", "waves, a twist, an explosion and a swarm, for animate", MOVING_DEFAULT, true}};
+      {"moving", "waves, a twist, an explosion and a swarm, for animate", MOVING_DEFAULT, true},
+      {"instances", "a swarm of N instances of three meshes: stones, ferns and boxes",
+       static_cast<std::uint32_t>(swarm_triangles(INSTANCES_DEFAULT)), true}};
 }
 
 std::vector<SceneListing> list_hard_scenes() {
@@ -200,14 +210,15 @@ Scene load_mesh_file(const std::filesystem::path& path, const GltfReading& readi
 }
 
 Scene make_built_in(const std::string& spec) {
-  if (auto scene = find_generated(spec)) return std::move(*scene);
+  if (auto scene = find_generated(spec)) return flattened(std::move(*scene));
   throw InputError("unknown scene '" + printable(std::string_view(spec)) +
                    "', expected a built-in one (see 'coppice scenes')");
 }
 
-Scene open_scene(const std::string& spec, std::string_view up) {
+Scene open_scene(const std::string& spec, std::string_view up, bool keep_instances) {
   std::optional<Scene> generated = find_generated(spec);
   Scene scene = generated ? std::move(*generated) : open_file(spec);
+  if (!keep_instances) scene = flattened(std::move(scene));
   stand_up(scene, up);
   bring_into_range(scene);
   return scene;

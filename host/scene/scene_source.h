@@ -21,8 +21,9 @@ struct SceneListing {
   std::string name;         // as open_scene takes it
   std::string description;  // one line
   std::uint32_t triangles;  // the number of triangles without ":N"
-  // Whether ":N" may follow the name, N from 1 to MAX_GENERATED_TRIANGLES. The scene then has N triangles, a
-  // closed hard case as many as HardCase::triangle_count says.
+  // Whether ":N" may follow the name, of "instances" as their number, else N from 1 to
+  // MAX_GENERATED_TRIANGLES. The scene then has N triangles, a closed hard case as many as
+  // HardCase::triangle_count says.
   bool takes_count;
 };
 
@@ -37,8 +38,8 @@ struct SceneSize {
   std::uint64_t triangles, vertices;  // a hard case may have fewer vertices
 };
 
-// The size of a built-in scene that takes a number of triangles; none for "grove", and for a file. Throws
-// InputError where open_scene would, but for what is only found in files.
+// The size, instances flattened, of a built-in scene that takes a number of triangles; none for "grove", and
+// for a file. Throws InputError where open_scene would, but for what is only found in files.
 std::optional<SceneSize> built_in_size(const std::string& spec);
 
 // Whether the name ends in .obj, .gltf, .glb or .ply, in any letter case; and the load_* of what it is.
@@ -51,16 +52,18 @@ Scene make_built_in(const std::string& spec);
 
 // Opens what the user named: the path of a mesh (is_mesh_file), of a scene file (.json) or of an .anim file
 // with the OBJ of its first frame beside it (x_f00.obj beside x.anim), "grove", "scatter[:N]", "terrain[:N]",
-// "moving[:N]" or "hard:CASE[:N[:SEED]]", with SEED a decimal number below 2^64, 1 if not given. A built-in
-// name wins over a file of the same name ("./grove" names the file). The scene is stood up (stand_up) and
-// brought into range (bring_into_range). Throws InputError where nothing answers to the name, N or SEED is
-// out of range, or the file cannot be loaded.
-Scene open_scene(const std::string& spec, std::string_view up = "y");
+// "moving[:N]", "instances[:N]" or "hard:CASE[:N[:SEED]]", with SEED a decimal number below 2^64, 1 if not
+// given. A built-in name wins over a file of the same name ("./grove" names the file). The scene is stood up
+// (stand_up) and brought into range (bring_into_range). Throws InputError where nothing answers to the name,
+// N or SEED is out of range, or the file cannot be loaded. Instances are flattened unless they are to be
+// kept.
+Scene open_scene(const std::string& spec, std::string_view up = "y", bool keep_instances = false);
 
 // What names a scene.
 struct SceneOptions {
   std::string spec = "grove";  // as open_scene takes it
   std::string up = "y";        // one of UP_AXES
+  bool keep_instances = false;
 };
 
 }  // namespace coppice

@@ -70,6 +70,7 @@
   STAGE(move_instances, MoveInstancesArgs, NoConstants, exactly)                       \
   STAGE(instance_boxes, InstanceBoxesArgs, NoConstants, exactly)                       \
   STAGE(trace_instances, TraceInstancesArgs, TraceInstancesConstants, nearly_levels)   \
+  STAGE(place_hits, PlaceHitsArgs, NoConstants, exactly)                               \
   STAGE(bounce_rays, BounceRaysArgs, NoConstants, nearly_bounced)                      \
   STAGE(shade, ShadeArgs, ShadeConstants, nearly_radiance)                             \
   STAGE(show, ShowArgs, ShowConstants, nearly_radiance)                                \

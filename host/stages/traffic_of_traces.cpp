@@ -86,6 +86,12 @@ Bytes trace_instances(const TraceInstancesArgs& a, const RunCounts& counts) {
              (sizeof(PlacedInstance) + sizeof(InstanceTransform) + sizeof(Triangle));
 }
 
+Bytes place_hits(const PlaceHitsArgs& a, const RunCounts& counts) {
+  return a.ray_count * (sizeof(Hit) + 4 + sizeof(Triangle) + 4) +
+         share(counts.hits, a.ray_count, counts) *
+             (4 + sizeof(uint) + sizeof(InstanceTransform) + sizeof(Triangle) + 4);
+}
+
 Bytes trace_brute_force(const TraceBruteForceArgs& a, const RunCounts&) {
   return a.ray_count * ray_and_hit + a.triangle_count * sizeof(Triangle);
 }

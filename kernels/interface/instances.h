@@ -90,6 +90,22 @@ struct TraceInstancesArgs {
   uint stack_entries;
 };
 
+// What shades hits of one level shades those of two behind this: of each hit the triangle in the world and its
+// material, one a ray, and in the hit the ray's index as its triangle.
+struct PlaceHitsArgs {
+  READS(UintBuffer) hit_instances;   // ray_count
+  READS(PlacedInstanceBuffer) placed;
+  READS(InstanceTransformBuffer) transforms;
+  READS(MeshRangeBuffer) meshes;
+  READS(TriangleBuffer) mesh_triangles;
+  READS(UintBuffer) mesh_materials;  // one a triangle of mesh_triangles
+  HitBuffer hits;                    // ray_count; misses stay as they are
+  TriangleBuffer triangles;          // out: ray_count
+  UintBuffer material_index;         // out: ray_count
+  uint ray_count;
+  uint padding;
+};
+
 // Specialization constants; stack_entries as in the arguments.
 struct TraceInstancesConstants {
   uint max_turns;  // of the loop, as in TraceClosestConstants

@@ -3,6 +3,7 @@
 #define COPPICE_LIB_INSTANCE
 #include "lib/selected.glsl"
 #include "lib/transform.glsl"
+#include "lib/instance_words.glsl"
 
 const float FLT_LARGEST = 3.40282346638528859812e38;
 const float INSTANCE_ROUNDING = 9.5367431640625e-7;       // 16 * 2^-24
@@ -12,14 +13,6 @@ const float INSTANCE_SLACK = 1.0009765625;                // 1 + 2^-10
 const float INSTANCE_LEAST = 7.52316384526264005100e-37;  // 2^-120
 const float INSTANCE_LOW = 8.67361737988403547206e-19;    // 2^-60
 const float INSTANCE_HIGH = 1.15292150460684697600e18;    // 2^60
-
-Transform transform_of(InstanceTransform t) {
-  Transform by;
-  by.rows[0] = flushed_row(vec4(t.row_x, t.move_x));
-  by.rows[1] = flushed_row(vec4(t.row_y, t.move_y));
-  by.rows[2] = flushed_row(vec4(t.row_z, t.move_z));
-  return by;
-}
 
 bool finite(Transform t) {
   return finite(t.rows[0].xyz) && finite(t.rows[1].xyz) && finite(t.rows[2].xyz) && finite(t.rows[0].w) &&
@@ -122,7 +115,8 @@ PlacedInstance placed_instance(Transform by, Aabb mesh_box, uint mesh) {
     vec2 both = pad_and_room(rows[axis], axis, by, reach, way, way_and_move);
     pad[axis] = both.x;
     room[axis] = both.y;
-    is_good = is_good && is_within_range(absolute_sum(rows[axis])) && both.x <= INSTANCE_HIGH && reach[axis] <= INSTANCE_HIGH;
+    is_good = is_good && is_within_range(absolute_sum(rows[axis])) && both.x <= INSTANCE_HIGH;
+    is_good = is_good && reach[axis] <= INSTANCE_HIGH;
   }
   if (!is_good) {
     rows = mat3(0.0);

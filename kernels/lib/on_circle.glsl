@@ -1,5 +1,5 @@
-// Sine and cosine of a part of a turn of 2^32, with multiplications and additions only, so that every device computes the
-// same bits. Taylor's polynomials on an eighth of a turn to either side; errors are below 2^-20.
+// Sine and cosine of a part of a turn of 2^32, with multiplications and additions only, so that every device computes
+// the same bits. Taylor's polynomials on an eighth of a turn to either side; errors are below 2^-20.
 #ifndef COPPICE_LIB_ON_CIRCLE
 #define COPPICE_LIB_ON_CIRCLE
 

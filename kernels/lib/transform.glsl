@@ -1,5 +1,5 @@
-// A transform of three rows, in a fixed order of operations. Whatever is denormal or -0 becomes +0, intermediate results
-// too, so that it is all the same which devices flush denormals. Each operation is monotonic in each operand.
+// A transform of three rows, in a fixed order of operations. Whatever is denormal or -0 becomes +0, intermediate
+// results too, so that it is all the same which devices flush denormals. Each operation is monotonic in each operand.
 #ifndef COPPICE_LIB_TRANSFORM
 #define COPPICE_LIB_TRANSFORM
 #include "lib/finite.glsl"

@@ -1,7 +1,7 @@
-// Takes a ray through two levels of BVH2, depth-first, the nearer child first: a tree over instances, and from each of its
-// leaves the tree of the instance's mesh, by the ray as that mesh sees it. Leaves wait on the stack as pairs of children
-// do, and are left out if the closest hit is before them when their turn comes. Needs the constants TRACE_MAX_TURNS and
-// TRACE_STACK, and TRACE_TRIANGLE_TEST and TRACE_BOX_TEST as watertight and robust.
+// Takes a ray through two levels of BVH2, depth-first, the nearer child first: a tree over instances, and from each of
+// its leaves the tree of the instance's mesh, by the ray as that mesh sees it. Leaves wait on the stack as pairs of
+// children do, and are left out if the closest hit is before them when their turn comes. Needs the constants
+// TRACE_MAX_TURNS and TRACE_STACK, and TRACE_TRIANGLE_TEST and TRACE_BOX_TEST as watertight and robust.
 #ifndef COPPICE_LIB_WALK_INSTANCES
 #define COPPICE_LIB_WALK_INSTANCES
 #include "instance.glsl"
@@ -113,9 +113,9 @@ void visit_pair(Level level, float t_min, float t, inout InstanceWalk walk) {
 
 void enter_mesh(TwoLevels levels, TraceRay ray, float t, inout InstanceWalk walk, out Level level) {
   uint instance = walk.visit & ~VISIT_LEAF;
-  PlacedInstance placed = levels.placed.at[instance];
+  PlacedInstance placed = load_placed(levels.placed, instance);
   MeshRange mesh = levels.meshes.at[placed.mesh];
-  level = mesh_level(ray, placed, transform_of(levels.transforms.at[instance]));
+  level = mesh_level(ray, placed, load_transform(levels.transforms, instance));
   walk.instance = instance;
   walk.base = walk.top;
   walk.first_triangle = mesh.first_triangle;
@@ -133,10 +133,11 @@ void leave_mesh(TwoLevels levels, TraceRay ray, inout InstanceWalk walk, out Lev
 void test_triangle(TwoLevels levels, TraceRay ray, InstanceWalk walk, inout InstanceHit closest) {
   uint index = walk.visit & ~VISIT_LEAF;
   Triangle mesh = load_triangle(levels.mesh_triangles, walk.first_triangle + index);
-  Transform by = transform_of(levels.transforms.at[walk.instance]);
+  Transform by = load_transform(levels.transforms, walk.instance);
   Triangle triangle = Triangle(transformed(by, mesh.a), transformed(by, mesh.b), transformed(by, mesh.c));
   if (!(finite(triangle.a) && finite(triangle.b) && finite(triangle.c))) return;
-  uint rank = walk.instance < closest.instance ? NO_TRIANGLE : (walk.instance == closest.instance ? closest.hit.triangle : 0u);
+  uint rank = walk.instance == closest.instance ? closest.hit.triangle : 0u;
+  if (walk.instance < closest.instance) rank = NO_TRIANGLE;
   Hit hit = Hit(closest.hit.t, rank, 0.0, 0.0);
   intersect_triangle(ray, triangle, index, hit);
   if (hit.t != closest.hit.t || hit.triangle != rank) closest = InstanceHit(hit, walk.instance);
