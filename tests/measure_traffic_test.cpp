@@ -7,6 +7,7 @@
 #include "measure/traffic.h"
 #include "pipeline/batch.h"
 #include "pipeline/build_plan.h"
+#include "pipeline/instances.h"
 #include "pipeline/refit.h"
 #include "pipeline/scan_plan.h"
 #include "pipeline/trace_any.h"
@@ -104,6 +105,32 @@ TEST(Traffic, OfARefit) {
       EXPECT_EQ(modelled_bytes(step, counts), 0u);
     }
   }
+}
+
+TEST(Traffic, OfTwoLevels) {
+  Layout layout;
+  constexpr std::uint32_t meshes[] = {100, 7};
+  const InstancePlan plan = plan_instances(layout, meshes, 1000, {});
+  const RaySlots rays{layout.add<Ray>("rays", 100), layout.add<Hit>("hits", 100),
+                      layout.add<TraceCounters>("counters", 1), {}};
+  const PlacedHitSlots hits = plan_placed_hits(layout, plan, 100);
+  Chain chain(no_addresses);
+  append_moves(chain, plan, 1, 0, 0);
+  append_top(chain, plan);
+  append_instance_hits(chain, plan, rays, hits.hit_instances, 100, {});
+  append_placed_hits(chain, plan, rays, hits, 0, 100);
+  RunCounts counts;
+  counts.active_count = 1000;
+  counts.rays = 100, counts.hits = 50, counts.steps = 400;
+  std::map<std::string, std::uint64_t> bytes;
+  for (const Step& step : chain.steps()) {
+    if (stage_of(step)) bytes[stage_of(step)->name] += modelled_bytes(step, counts);
+  }
+  EXPECT_EQ(bytes["move_instances"], 48000u);
+  EXPECT_EQ(bytes["instance_boxes"], 140000u);
+  EXPECT_EQ(bytes["box_bounds"], 48000u);
+  EXPECT_EQ(bytes["trace_instances"], 100u * 68 + 400 * 64 + 50 * 148);
+  EXPECT_EQ(bytes["place_hits"], 100u * 60 + 50 * 96);
 }
 
 // 64 triangles under 9 wide nodes: the root has 8, which have 8 leaves each.

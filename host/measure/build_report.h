@@ -18,7 +18,8 @@ struct BuildReport {
   std::string variants;  // of stages on the device
   bool lookback = false;
   std::uint64_t triangles = 0, inactive = 0;
-  glm::dvec3 offset{0.0};  // that the reader subtracted from all coordinates of the file
+  std::uint64_t instances = 0;  // of meshes that have these triangles; then the tree is over instances
+  glm::dvec3 offset{0.0};       // that the reader subtracted from all coordinates of the file
   std::uint32_t radius = 0, morton_bits = 0, leaf_size = 0;
   Spread build_ms{}, wall_ms{};
   std::uint32_t runs = 0;

@@ -58,6 +58,7 @@ Json to_json(const FrameReport& report, const Scene& scene, const FrameRuns& fra
   sums_to_json(report.kernels, json);
   json["show"] = name_of(report.shown.options.show);
   json["shown"] = to_json(report.shown, scene);
+  if (report.build.instances) json["instances"] = report.build.instances;
   json["image_hash"] = hex16(image_hash(report.image));
   json["hits"] = report.hits;
   json["steps_per_ray"] =
@@ -72,6 +73,8 @@ std::string text_of(const FrameReport& report, const Scene& scene, const FrameRu
       format("%s: %llu triangles", build.scene.c_str(), static_cast<unsigned long long>(build.triangles));
   if (build.inactive)
     text += format(", %llu of them inactive", static_cast<unsigned long long>(build.inactive));
+  if (build.instances)
+    text += format(", in %llu instances of meshes", static_cast<unsigned long long>(build.instances));
   text += format("\n  load     %9.1f ms\n", around.load_ms);
   if (around.prepare_ms > 0) text += format("  device   %9.1f ms  open, self-check\n", around.prepare_ms);
   text += format("  build    %9.1f ms  %s on %s, SAH cost %.2f, depth %u\n", build.build_ms.median,

@@ -34,6 +34,7 @@ BuildReport report_for(const BuilderChoice& builder, const Scene& scene, std::sp
   report.scene = scene.name;
   report.triangles = scene.indices.size();
   report.inactive = count_inactive(scene);
+  report.instances = scene.instances.size();
   report.offset = scene.offset;
   report.builder = builder.name;
   report.radius = builder.radius;
