@@ -117,8 +117,9 @@ TEST_F(CommandEnds, WithoutTimestampsTimesAreTheHostsAndKernelsHaveNone) {
   EXPECT_GT(render["wide_ms"], 0);
   EXPECT_GT(render["build"]["build_ms"], 0);
   EXPECT_NEAR(render["mrays_per_s"], 64 * 48 / render["trace_ms"].get<double>() / 1000, 1e-9);
-  for (const char* arguments : {"sort --most 1024 --only sort_keys_32", "scan --most 1024",
-                                "trace terrain:500 --size 32x24", "build --most 3000 --builder gpu-ploc"}) {
+  for (const char* arguments :
+       {"sort --most 1024 --only sort_keys_32", "scan --most 1024", "trace terrain:500 --size 32x24",
+        "instances --most 200 --size 32x24", "build --most 3000 --builder gpu-ploc"}) {
     const Outcome bench = run_with(without, std::string("bench ") + arguments + " --runs 2 --json -");
     ASSERT_EQ(bench.status, 0) << arguments << ": " << bench.err;
     const auto report = nlohmann::json::parse(bench.out);

@@ -74,7 +74,9 @@ TEST_F(Command, BenchChecksAndTimes) {
        "ploc_merge_percent_of_copy"},
       {"refit --most 12000 --builder gpu-ploc", "refit-wide-ploc", 2 * 2, 12000, "times_copy"},
       {"refit terrain:500", "refit-wide-lbvh", 3 * 2, 500, "order_ms"},
-      {"trace terrain:500 --size 32x24 --builder gpu-lbvh", "trace_shadow_any", 10, 0, "not_as_on_cpu"}};
+      {"trace terrain:500 --size 32x24 --builder gpu-lbvh", "trace_shadow_any", 10, 0, "not_as_on_cpu"},
+      {"instances --most 500 --size 32x24 --builder gpu-lbvh", "instances_trace", 3, 768,
+       "instance_boxes_ms"}};
   for (const auto& c : cases) {
     const Outcome outcome =
         run(std::string("bench ") + c.arguments + " --runs 2 --validate --csv rows.csv --json -");

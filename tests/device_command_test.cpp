@@ -3,6 +3,7 @@
 #include <glm/vec3.hpp>
 #include <iomanip>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "support/command.h"
@@ -293,6 +294,23 @@ TEST_F(Command, ListsScenesAndDevices) {
   }
   const auto devices = nlohmann::json::parse(run("devices --json -").out);
   EXPECT_FALSE(devices.empty());
+}
+
+// One level or two: the same picture.
+TEST_F(Command, InstancesAreRenderedByEveryTracer) {
+  std::set<std::string> hashes;
+  for (const char* how : {"", "--tree wide", "--builder gpu-hploc", "--builder sah", "--tracer cpu"}) {
+    const Outcome outcome =
+        run("render instances:30 --size 64x48 -o out.png --json out.json " + std::string(how));
+    ASSERT_EQ(outcome.status, 0) << how << outcome.err;
+    const auto report = nlohmann::json::parse(read("out.json"));
+    const bool two_levels = std::string_view(how).empty() || std::string_view(how).ends_with("hploc");
+    EXPECT_EQ(report.value("instances", 0), two_levels ? 30 : 0) << how;
+    EXPECT_GT(report["hits"], 100) << how;
+    hashes.insert(report["image_hash"].get<std::string>());
+  }
+  EXPECT_EQ(hashes.size(), 1u);
+  expect_refused("render instances:0 -o out.png", 1, "instances");
 }
 
 }  // namespace

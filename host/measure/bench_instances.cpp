@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "analysis/compare.h"
 #include "analysis/tree_hash.h"
@@ -29,6 +30,12 @@ int swarm_exponent(std::uint32_t instance_count) {
   int exponent = 1;
   while (1ull << (3 * (exponent - 1)) < instance_count) ++exponent;
   return exponent;
+}
+
+std::vector<std::uint32_t> swarm_sizes(std::uint32_t most) {
+  std::vector<std::uint32_t> sizes;
+  for (std::uint64_t size = 1000; size <= most; size *= 10) sizes.push_back(static_cast<std::uint32_t>(size));
+  return sizes.empty() ? std::vector{most} : sizes;
 }
 
 Scene swarm_seen(std::uint32_t instance_count) {
@@ -226,7 +233,7 @@ void bench_instances(CheckedDevice& device, const BenchOptions& options, const A
     const bool top = is_wanted(options, "instances_top", input);
     const bool trace = is_wanted(options, "instances_trace", input);
     if (!moves && !top && !trace) continue;
-    for (std::uint32_t count = 1000; count <= options.most; count *= 10) {
+    for (const std::uint32_t count : swarm_sizes(options.most)) {
       SwarmBench bench(device, options, builder, count);
       if (moves) add(bench.moves());
       if (top) add(bench.top());
