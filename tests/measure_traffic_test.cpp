@@ -111,8 +111,10 @@ TEST(Traffic, OfTwoLevels) {
   Layout layout;
   constexpr std::uint32_t meshes[] = {100, 7};
   const InstancePlan plan = plan_instances(layout, meshes, 1000, {});
-  const RaySlots rays{layout.add<Ray>("rays", 100), layout.add<Hit>("hits", 100),
-                      layout.add<TraceCounters>("counters", 1), {}};
+  const RaySlots rays{layout.add<Ray>("rays", 100),
+                      layout.add<Hit>("hits", 100),
+                      layout.add<TraceCounters>("counters", 1),
+                      {}};
   const PlacedHitSlots hits = plan_placed_hits(layout, plan, 100);
   Chain chain(no_addresses);
   append_moves(chain, plan, 1, 0, 0);

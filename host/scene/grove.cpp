@@ -209,11 +209,12 @@ void append_floor(Scene& scene, Random& random) {
 std::shared_ptr<const Motion> wind_in(const Scene& scene) {
   const auto motion = std::make_shared<Motion>();
   motion->rest = scene.positions;
-  motion->deformations = {{.vertices = {.first = 0, .count = static_cast<std::uint32_t>(scene.positions.size())},
-                           .kind = DeformKind::sway,
-                           .size = 7,
-                           .amount = 0.05f,
-                           .seconds = 4}};
+  motion->deformations = {
+      {.vertices = {.first = 0, .count = static_cast<std::uint32_t>(scene.positions.size())},
+       .kind = DeformKind::sway,
+       .size = 7,
+       .amount = 0.05f,
+       .seconds = 4}};
   motion->duration_seconds = 4;
   return motion;
 }

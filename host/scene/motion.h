@@ -41,7 +41,7 @@ struct VertexSequence {
 // One morph target (glTF 2.0, 3.7.2.2): offsets of positions, added with the weight of its place.
 struct MorphTarget {
   VertexRange vertices;
-  std::uint32_t weight = 0;        // index into Pose::morph_weights
+  std::uint32_t weight = 0;          // index into Pose::morph_weights
   std::vector<glm::vec3> offsets{};  // one a vertex
 };
 

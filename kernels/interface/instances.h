@@ -8,8 +8,9 @@ const uint MOVE_INSTANCES_GROUP = 64;
 const uint INSTANCE_BOXES_GROUP = 64;
 const uint NO_INSTANCE = 0xffffffffu;
 
-// From the space of a mesh to the world, by rows: x of the world is dot(row_x, position) + move_x. The corners
-// of an instance's triangles are what gather_triangles makes of the mesh's with this transform, bit for bit.
+// From the space of a mesh to the world, by rows: x of the world is dot(row_x, position) + move_x. The
+// corners of an instance's triangles are what gather_triangles makes of the mesh's with this transform, bit
+// for bit.
 struct InstanceTransform {
   vec3 row_x;
   float move_x;
@@ -29,10 +30,10 @@ struct MeshRange {
 };
 
 // How rays get from the world to the space of an instance's mesh: by rows, as in InstanceTransform, of some
-// matrix near the inverse. A ray that meets a triangle of the instance passes through every box around it there
-// once that is widened on each axis by `pad` and by `room` for each unit that the ray's origin is away from the
-// instance's (maximum norm); docs/numerics.md, "Instances". Infinite pads where the transform has no inverse
-// that is good for anything.
+// matrix near the inverse. A ray that meets a triangle of the instance passes through every box around it
+// there once that is widened on each axis by `pad` and by `room` for each unit that the ray's origin is away
+// from the instance's (maximum norm); docs/numerics.md, "Instances". Infinite pads where the transform has no
+// inverse that is good for anything.
 struct PlacedInstance {
   vec3 row_x;
   float room_x;  // positive
@@ -48,8 +49,8 @@ INTERFACE_BUFFER(InstanceTransformBuffer, InstanceTransform, 16)
 INTERFACE_BUFFER(MeshRangeBuffer, MeshRange, 16)
 INTERFACE_BUFFER(PlacedInstanceBuffer, PlacedInstance, 16)
 
-// A swarm on its way around the axis y, from nothing but a time: each instance with an orbit, an attitude and a
-// size of its own, every other one mirrored.
+// A swarm on its way around the axis y, from nothing but a time: each instance with an orbit, an attitude and
+// a size of its own, every other one mirrored.
 struct MoveInstancesArgs {
   InstanceTransformBuffer transforms;  // out: instance_count
   uint instance_count;
@@ -90,10 +91,10 @@ struct TraceInstancesArgs {
   uint stack_entries;
 };
 
-// What shades hits of one level shades those of two behind this: of each hit the triangle in the world and its
-// material, one a ray, and in the hit the ray's index as its triangle.
+// What shades hits of one level shades those of two behind this: of each hit the triangle in the world and
+// its material, one a ray, and in the hit the ray's index as its triangle.
 struct PlaceHitsArgs {
-  READS(UintBuffer) hit_instances;   // ray_count
+  READS(UintBuffer) hit_instances;  // ray_count
   READS(PlacedInstanceBuffer) placed;
   READS(InstanceTransformBuffer) transforms;
   READS(MeshRangeBuffer) meshes;

@@ -17,7 +17,8 @@ const uint SHOW_GROUPS = 6;   // the word of the primitive, a colour each
 const uint SHOW_MAP_COLOURS = 256;
 const float SHOW_NOTHING = 0.0078125;  // each channel, where nothing is hit
 
-// A value v has colour (v - least) * per_unit of the map, rounded down, the first or last one beyond its ends.
+// A value v has colour (v - least) * per_unit of the map, rounded down, the first or last one beyond its
+// ends.
 struct ShowScale {
   float least;
   float per_unit;

@@ -6,6 +6,7 @@
 #define TINYGLTF_NO_INCLUDE_STB_IMAGE_WRITE
 #define TINYGLTF_NO_INCLUDE_JSON
 // clang-format off: it has no include of its own
-#include <nlohmann/json.hpp>
 #include <tiny_gltf.h>
+
+#include <nlohmann/json.hpp>
 // clang-format on
