@@ -5,7 +5,7 @@
 #   ./test.sh                    everything
 #   ./test.sh CTEST_ARGUMENT...  one ctest run on the reference driver, for example ./test.sh -R sort
 # COPPICE_DRIVER=auto|private|stock|system chooses the Vulkan driver, see host/setup.sh.
-# COPPICE_FUZZ_SECONDS is how long each reader is fuzzed, some thousand inputs unless given; COPPICE_FUZZ_SEED another seed.
+# COPPICE_FUZZ_SECONDS: how long each reader is fuzzed, thousands of inputs unless given; COPPICE_FUZZ_SEED: another seed.
 set -euo pipefail
 source "$(dirname "$(realpath "${BASH_SOURCE[0]}")")/host/setup.sh"
 
