@@ -311,6 +311,9 @@ TEST_F(Command, InstancesAreRenderedByEveryTracer) {
   }
   EXPECT_EQ(hashes.size(), 1u);
   expect_refused("render instances:0 -o out.png", 1, "instances");
+  const Outcome too_many = run_in(4'000'000, "render instances:67107840 -o out.png");
+  EXPECT_EQ(too_many.status, 1);
+  EXPECT_NE(too_many.err.find("bytes of memory"), std::string::npos) << too_many.err;
 }
 
 }  // namespace

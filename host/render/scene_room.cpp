@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 
+#include "interface/instances.h"
 #include "scene/input_error.h"
 #include "scene/printable.h"
 
@@ -50,6 +51,19 @@ std::uint64_t device_bytes_of(const SceneSize& size, const DeviceRoom& room) {
   std::uint64_t bytes = 0;
   for (const std::uint64_t block : layout.block_bytes()) bytes += block;
   return bytes;
+}
+
+// Of each instance what the scene and its arrays hold, and what a device does that shares the host's memory:
+// transforms, boxes, and a tree of the builder that takes the most.
+void check_instance_room(const std::string& spec, const SceneSize& size) {
+  constexpr std::uint64_t on_host = sizeof(Instance) + sizeof(uint) + sizeof(InstanceTransform);
+  constexpr std::uint64_t on_device = sizeof(InstanceTransform) + sizeof(PlacedInstance) + 2 * sizeof(Aabb) +
+                                      4 * sizeof(Node) + 6 * sizeof(uint);
+  const std::uint64_t wanted = size.instances * (on_host + on_device), had = bytes_to_be_had();
+  if (wanted <= had) return;
+  throw InputError("scene '" + printable(std::string_view(spec)) + "' needs at least " +
+                   std::to_string(wanted) + " bytes of memory, and " + std::to_string(had) +
+                   " are to be had");
 }
 
 std::string gigabytes(std::uint64_t bytes) {
@@ -106,7 +120,9 @@ Scene open_scene_with_room(const SceneOptions& options, const DeviceOptions* dev
                            const std::optional<BuildOptions>& build,
                            const std::function<void(const std::string&)>& note) {
   const std::optional<SceneSize> size = built_in_size(options.spec);
-  if (size && size->triangles > small_triangles && !options.keep_instances) {
+  if (size && size->instances > 0 && options.keep_instances) {
+    check_instance_room(options.spec, *size);
+  } else if (size && size->triangles > small_triangles) {
     std::optional<Device> opened;
     if (device) opened.emplace(DeviceOptions{.select = device->select});
     check_room(options.spec, {opened ? &*opened : nullptr, build}, note);

@@ -109,7 +109,7 @@ std::optional<BuiltIn> find_built_in(const std::string& spec) {
   if (name == "instances") {
     const std::uint32_t count = parse_count(spec, text, INSTANCES_DEFAULT, "instances");
     const std::uint64_t triangles = swarm_triangles(count);
-    return BuiltIn{{triangles, 3 * triangles}, [=] { return make_instances(count); }};
+    return BuiltIn{{triangles, 3 * triangles, count}, [=] { return make_instances(count); }};
   }
   if (name == "moving") {
     const std::uint32_t count = parse_count(spec, text, MOVING_DEFAULT);

@@ -36,6 +36,7 @@ std::vector<SceneListing> list_hard_scenes();
 // What a built-in scene will hold, known before it is made.
 struct SceneSize {
   std::uint64_t triangles, vertices;  // a hard case may have fewer vertices
+  std::uint64_t instances = 0;        // where they are kept
 };
 
 // The size, instances flattened, of a built-in scene that takes a number of triangles; none for "grove", and
