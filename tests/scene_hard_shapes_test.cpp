@@ -29,8 +29,8 @@ double area(const Triangle& t) {
   return 0.5 * glm::length(glm::cross(glm::dvec3(t.b) - glm::dvec3(t.a), glm::dvec3(t.c) - glm::dvec3(t.a)));
 }
 
-using Place = std::tuple<float, float, float>;
-Place place(vec3 p) { return {p.x, p.y, p.z}; }
+using PointKey = std::tuple<float, float, float>;
+PointKey place(vec3 p) { return {p.x, p.y, p.z}; }
 
 // How often each directed edge occurs, where `vertex` names the corner of an index.
 template <class Vertex>
@@ -105,7 +105,7 @@ TEST(HardShapes, TheDyadicGridIsExactAndWithoutTJunctions) {
   for (const std::uint32_t count : {1u, 2u, 3u, 50u, 1001u, 10'000u}) {
     const Scene scene = make_hard_case("dyadic-grid", count);
     for (const vec3 p : scene.positions) EXPECT_EQ(p * 256.0f, glm::floor(p * 256.0f));
-    std::set<Place> places;
+    std::set<PointKey> places;
     for (const vec3 p : scene.positions) places.insert(place(p));
     EXPECT_EQ(places.size(), scene.positions.size());
     // Every triangle is half a cell, and every edge inside is that of two: nothing can lie on an edge.
@@ -134,7 +134,7 @@ TEST(HardShapes, IndicesRepeatWithinTriangles) {
 
 TEST(HardShapes, PositionsRepeatUnderSeveralIndices) {
   const Scene scene = make_hard_case("repeated-positions", 1000);
-  std::set<Place> places;
+  std::set<PointKey> places;
   for (const vec3 p : scene.positions) places.insert(place(p));
   EXPECT_EQ(scene.positions.size(), 3000u);
   EXPECT_LT(places.size(), 600u);
