@@ -35,8 +35,9 @@ struct ViewRun {
 struct ViewReport {
   std::string scene, builder, device, driver, walk;
   std::uint64_t triangles = 0;
-  std::uint32_t width = 0, height = 0;  // of the last picture
-  std::vector<double> frame_ms, device_ms;
+  std::uint32_t width = 0, height = 0;      // of the last picture
+  std::uint64_t frames = 0;                 // pictures that were made
+  std::vector<double> frame_ms, device_ms;  // of the last of them
   std::uint64_t image_hash = 0;
   std::vector<std::string> validation_messages;
   bool work_left = false;  // a scene is still being opened by a thread, which ends with the program

@@ -107,13 +107,13 @@ class ViewFrames {
   Layout layout_;
   MovingVertices vertices_;
   MotionSlots at_;
+  std::optional<RefitPlan> refit_;  // as what stands above, planned with plan_
   FramePlan plan_;
   GpuExecutor executor_;
-  std::optional<RefitPlan> refit_;
   UpdateChooser chooser_;
   std::optional<Recorder> tree_recorder_, refit_recorder_, trace_recorder_;
-  std::vector<std::string> tree_groups_, refit_groups_,
-      trace_groups_;               // one a mark, and one for what is behind the last
+  // One a mark, and one for what is behind the last.
+  std::vector<std::string> tree_groups_, refit_groups_, trace_groups_;
   std::optional<double> seconds_;  // of the tree
   bool values_old_ = true;         // what is shown of primitives
 };

@@ -30,7 +30,7 @@ Json to_json(const ViewReport& report) {
           {"driver", report.driver},
           {"width", report.width},
           {"height", report.height},
-          {"frames", report.device_ms.size()},
+          {"frames", report.frames},
           {"frame_ms", percentiles(report.frame_ms)},
           {"device_ms", percentiles(report.device_ms)},
           {"image_hash", hex16(report.image_hash)}};

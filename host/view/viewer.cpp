@@ -37,6 +37,13 @@ bool same_show(const ShowOptions& a, const ShowOptions& b) {
   return a.show == b.show && a.most_steps == b.most_steps && a.round == b.round && a.level == b.level;
 }
 
+// Of the last frames, however many there are.
+void keep_time(std::vector<double>& times, double ms) {
+  constexpr std::size_t most = 1u << 16;
+  if (times.size() == most) times.erase(times.begin(), times.begin() + most / 2);
+  times.push_back(ms);
+}
+
 }  // namespace
 
 Viewer::Viewer(const ViewRun& run, const Note& note)
@@ -131,7 +138,7 @@ void Viewer::turn() {
   if (!screen_.show(picture)) return;
   if (!frames_) return;
   ++presented_;
-  if (presented_ > 1) frame_ms_.push_back(passed * 1000);
+  if (presented_ > 1) keep_time(frame_ms_, passed * 1000);
   answer_requests();
 }
 
@@ -144,10 +151,12 @@ void Viewer::start_scene() {
 void Viewer::take_scene() {
   SceneJob::Result result = job_.take();
   if (!result.complaint.empty()) {
-    if (!opened_) throw InputError(result.complaint);
+    if (presented_ == 0) throw InputError(result.complaint);
     complain(result.complaint);
-    asked_.scene = shown_.scene = opened_->options;
-    asked_.builder = shown_.builder = opened_->builder;
+    if (opened_) {
+      asked_.scene = shown_.scene = opened_->options;
+      asked_.builder = shown_.builder = opened_->builder;
+    }
   }
   if (!result.opened) return;
   const bool is_new = !opened_ || opened_->options.spec != result.opened->options.spec;
@@ -188,8 +197,12 @@ void Viewer::remake_frames() {
   } catch (const DeviceHung&) {
     throw;
   } catch (const std::exception& error) {  // too large for the device, or a view that the tracer has not
-    if (!had_frames) throw;
+    if (presented_ == 0) throw;
     complain(error.what());
+    if (!had_frames) {  // a new scene, which is given up
+      opened_.reset();
+      return;
+    }
     asked_ = shown_;
     make_frames(width, height);
   }
@@ -221,8 +234,7 @@ void Viewer::make_frames(std::uint32_t width, std::uint32_t height) {
 void Viewer::draw_picture() {
   if (!frames_) return;
   const bool moves = (plays_ && frames_->can_move()) || asked_.rebuild || asked_.draws_always;
-  static_assert(std::is_trivially_copyable_v<Film>);
-  Film film = film_at_time();
+  const Film film = film_at_time();
   if (!moves && !picture_old_ && !request_.rebuild && seconds_ == drawn_seconds_) return;
   const auto start = ViewClock::now();
   const ViewedFrame frame = frames_->draw(film, seconds_, asked_.rebuild || request_.rebuild);
@@ -234,7 +246,8 @@ void Viewer::draw_picture() {
 }
 
 void Viewer::note_frame(const ViewedFrame& frame, double ms) {
-  device_ms_.push_back(frame.device_ms);
+  ++drawn_;
+  keep_time(device_ms_, frame.device_ms);
   statistics_.last = frame;
   statistics_.frames.push_back({ms, frame.device_ms, frame.groups, frame.built});
   if (statistics_.frames.size() > ViewStatistics::kept) statistics_.frames.pop_front();

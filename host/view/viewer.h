@@ -141,8 +141,8 @@ class Viewer {
   std::string typed_scene_, complaint_;
   ViewStatistics statistics_;
   std::vector<double> frame_ms_, device_ms_;
-  std::uint64_t presented_ = 0;
-  std::vector<Node> boxes_;  // of the tree that is shown as boxes
+  std::uint64_t presented_ = 0, drawn_ = 0;  // frames, and pictures in them
+  std::vector<Node> boxes_;                  // of the tree that is shown as boxes
 };
 
 }  // namespace coppice

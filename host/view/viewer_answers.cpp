@@ -75,6 +75,7 @@ ViewReport Viewer::report() {
   report.builder = asked_.builder.name;
   report.device = device_->properties().name;
   report.driver = device_->properties().driver;
+  report.frames = drawn_;
   report.width = width_;
   report.height = height_;
   report.frame_ms = frame_ms_;
