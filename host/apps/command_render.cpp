@@ -102,10 +102,11 @@ class RenderCommand : public Command {
  private:
   bool traces_on_device() const { return tracer_ == "gpu"; }
 
-  // Otherwise instances are flattened: only the binary walk of trees of the device knows two levels.
+  // Otherwise instances are flattened: only the binary walk of trees of the device knows two levels, and what
+  // is shown in place of colours is of triangles in one tree.
   bool traces_instances() const {
     const WalkChoice& walk = device_.choices.walk;
-    return traces_on_device() && builder_.on_device() && !walk.any_wide &&
+    return traces_on_device() && builder_.on_device() && !walk.any_wide && show_.show == Show::color &&
            walk.walk.value_or(Walk::binary) == Walk::binary && can_trace_wide(picture_.trace);
   }
 
