@@ -42,7 +42,7 @@ struct MovingFrame {
 // A scene's frames, each in one submit: vertices to where they are, triangles, tree, picture. The tree is
 // that of the frame, built, or that of the last build, refitted; the picture is the same (with the watertight
 // and the robust test, as it does not depend on the tree). Submits are recorded once; what a frame is told
-// goes through as many slots as frames may be under way, and nothing is allocated for one. A scene without
+// goes through as many slots as frames may be under way. A scene without
 // motion stands still.
 class MovingFrames {
  public:
