@@ -20,8 +20,8 @@ float polynomial(const float (&coefficients)[N], float y) {
 }
 
 Circle circle_at(float turns) {
-  static constexpr float for_cos[] = {TURN_COS_0, TURN_COS_1, TURN_COS_2, TURN_COS_3, TURN_COS_4};
-  static constexpr float for_sin[] = {TURN_SIN_0, TURN_SIN_1, TURN_SIN_2, TURN_SIN_3, TURN_SIN_4};
+  static const float for_cos[] = {TURN_COS_0, TURN_COS_1, TURN_COS_2, TURN_COS_3, TURN_COS_4};
+  static const float for_sin[] = {TURN_SIN_0, TURN_SIN_1, TURN_SIN_2, TURN_SIN_3, TURN_SIN_4};
   const float quarters = 4 * (turns - std::floor(turns)), nearest = std::floor(quarters + 0.5f);
   const float x = quarters - nearest;
   const float c = polynomial(for_cos, x * x), s = x * polynomial(for_sin, x * x);
