@@ -5,8 +5,8 @@
 #define TINYGLTF_NO_INCLUDE_STB_IMAGE
 #define TINYGLTF_NO_INCLUDE_STB_IMAGE_WRITE
 #define TINYGLTF_NO_INCLUDE_JSON
-// clang-format off: it has no include of its own
-#include <tiny_gltf.h>
-
+// It does not include the first one itself.
+// clang-format off
 #include <nlohmann/json.hpp>
+#include <tiny_gltf.h>
 // clang-format on
