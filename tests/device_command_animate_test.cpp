@@ -92,6 +92,36 @@ TEST_F(CommandAnimate, AScenePicturedStandsStillAndSaysSo) {
   EXPECT_EQ(report["frame_hashes"][0], still["image_hash"]);
 }
 
+// Two levels: the first frame is that of `render`, and without them nothing moves.
+TEST_F(CommandAnimate, MovesInstances) {
+  const std::string swarm = "instances:200 --size 48x32 ";
+  const json report = json_of(run("animate " + swarm + "--frames 4 --fps 2 --validate --csv f.csv --json -"));
+  ASSERT_TRUE(report.is_object());
+  EXPECT_EQ(report["instances"], 200);
+  EXPECT_EQ(report["tree"], "binary");
+  EXPECT_EQ(report["rebuilds"], 4);
+  EXPECT_EQ(report["host_waits_per_frame"], 1.0);
+  EXPECT_GT(report["sah"][3], 1.0);
+  const std::set<std::string> hashes(report["frame_hashes"].begin(), report["frame_hashes"].end());
+  EXPECT_EQ(hashes.size(), 4u) << "instances move";
+  const json still = json_of(run("render " + swarm + "-o still.png --json -"));
+  EXPECT_EQ(report["frame_hashes"][0], still["image_hash"]);
+  std::set<std::string> kernels;
+  for (const json& kernel : report["kernels"]) kernels.insert(kernel["name"]);
+  for (const char* const stage : {"move_instances", "instance_boxes", "trace_instances", "place_hits"})
+    EXPECT_TRUE(kernels.contains(stage)) << stage;
+
+  const Outcome flat = run("animate " + swarm + "--frames 2 --fps 2 --tree wide --json -");
+  const json flattened = json_of(flat);
+  EXPECT_NE(flat.err.find("--tree binary"), std::string::npos) << flat.err;
+  EXPECT_FALSE(flattened.contains("instances"));
+  for (const json& hash : flattened["frame_hashes"]) EXPECT_EQ(hash, still["image_hash"]);
+  for (const char* const update : {"refit", "auto"})
+    expect_refused("animate " + swarm + "--update " + update, 1, std::string("--update ") + update);
+  const Outcome text = run("animate " + swarm + "--frames 1");
+  EXPECT_NE(text.out.find("in 200 instances of meshes"), std::string::npos) << text.out;
+}
+
 TEST_F(CommandAnimate, RefusesWhatItCannotDo) {
   write("file", "no folder");
   const struct {

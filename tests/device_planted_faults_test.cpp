@@ -187,7 +187,8 @@ Found run_instances(Device& device, const Spoil& spoil) {
   InstancesToTrace scene;
   scene.meshes = {random_triangles(200, 1, 0.5f), random_triangles(30, 2, 0.5f)};
   for (uint i = 0; i < 100; ++i) scene.mesh_index.push_back(i % 2);
-  scene.transforms.resize(100);
+  Random random(4);
+  for (uint i = 0; i < 100; ++i) scene.transforms.push_back(random_transform(random, 1, 2));
   std::vector<Ray> rays;
   for (uint i = 0; i < width * height; ++i) {
     const float x = static_cast<float>(i % width) / width, y = static_cast<float>(i / width) / height;
@@ -202,7 +203,7 @@ Found run_instances(Device& device, const Spoil& spoil) {
   const std::vector<uint> materials(placed.mesh_materials.count, 5);
   executor.upload(placed.mesh_materials, std::span<const uint>(materials));
   auto difference = executor.run([&](Chain& chain) {
-    append_moves(chain, slots.plan, 1, 12345, 1);
+    append_moves(chain, slots.plan, slots.swarm, 1);
     append_all(chain, slots, test_trace_options(1, 1));
     append_placed_hits(chain, slots.plan, slots.rays, placed, 0, static_cast<std::uint32_t>(rays.size()));
     spoil(chain.steps(), executor);

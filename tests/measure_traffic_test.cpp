@@ -117,7 +117,7 @@ TEST(Traffic, OfTwoLevels) {
                       {}};
   const PlacedHitSlots hits = plan_placed_hits(layout, plan, 100);
   Chain chain(no_addresses);
-  append_moves(chain, plan, 1, 0, 0);
+  append_moves(chain, plan, {plan.transforms, layout.add<uint>("turn", 1)}, 1);
   append_top(chain, plan);
   append_instance_hits(chain, plan, rays, hits.hit_instances, 100, {});
   append_placed_hits(chain, plan, rays, hits, 0, 100);
@@ -128,7 +128,7 @@ TEST(Traffic, OfTwoLevels) {
   for (const Step& step : chain.steps()) {
     if (stage_of(step)) bytes[stage_of(step)->name] += modelled_bytes(step, counts);
   }
-  EXPECT_EQ(bytes["move_instances"], 48000u);
+  EXPECT_EQ(bytes["move_instances"], 96000u);
   EXPECT_EQ(bytes["instance_boxes"], 140000u);
   EXPECT_EQ(bytes["box_bounds"], 48000u);
   EXPECT_EQ(bytes["trace_instances"], 100u * 68 + 400 * 64 + 50 * 148);

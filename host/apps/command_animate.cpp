@@ -105,8 +105,12 @@ class AnimateCommand : public Command {
   int run() override {
     if (!video_.empty()) check_writable(video_);
     const Pictures pictures = folder_.empty() ? Pictures() : Pictures(folder_);
+    scene_.keep_instances = traces_instances();
     const Scene scene = open_scene_of(scene_, builder_, device_, true);
-    if (!scene.motion) print_note("nothing moves in scene '" + scene.name + "': all frames are the same");
+    if (!scene.motion && !scene.swarm) print_note(why_still(scene));
+    if (!scene.instances.empty() && update_ != Update::rebuild)
+      throw InputError("--update " + std::string(word_of_update(update_)) + ": scene '" + scene.name +
+                       "' has instances, whose tree is built anew every frame (--update rebuild)");
     AnimateRuns runs{.builder = builder_, .trace = picture_.trace, .camera = picture_.camera};
     runs.update = update_;
     runs.tree_cost = tree_cost_ || !files.plot.empty() || !files.csv.empty();
@@ -123,6 +127,7 @@ class AnimateCommand : public Command {
     runs.trace_events = files.trace_events;
     CheckedDevice device = open_device(device_, use_for(scene));
     runs.trace = device.picture_options(runs.trace, static_cast<std::uint32_t>(scene.indices.size()));
+    if (!scene.instances.empty()) runs.trace.walk = Walk::binary;
     const AnimateReport report = animate(device, scene, runs);
     make_video(runs.frames_per_second);
     if (files.talks()) print(text_of(report));
@@ -155,6 +160,17 @@ class AnimateCommand : public Command {
     first_ = number(std::string_view(frames_text_).substr(0, dots));
     last_ = number(std::string_view(frames_text_).substr(dots + 2));
     if (last_ < first_) fail();
+  }
+
+  // Otherwise they are flattened: only the binary walk knows two levels.
+  bool traces_instances() const {
+    const WalkChoice& walk = device_.choices.walk;
+    return !walk.any_wide && walk.walk.value_or(Walk::binary) == Walk::binary;
+  }
+
+  std::string why_still(const Scene& scene) const {
+    return "nothing moves in scene '" + scene.name + "': all frames are the same" +
+           (traces_instances() ? "" : " (instances move with --tree binary)");
   }
 
   DeviceUse use_for(const Scene& scene) const {

@@ -115,6 +115,7 @@ AnimateReport animate(CheckedDevice& device, const Scene& scene, const AnimateRu
   report.driver = device.properties().driver;
   report.triangles = arrays.triangle_count();
   report.vertices = scene.positions.size();
+  report.instances = scene.instances.size();
   report.morton_bits = runs.builder.bits_for(arrays.triangles);
   report.width = runs.trace.width;
   report.height = runs.trace.height;

@@ -44,6 +44,7 @@ struct AnimatedFrame {
 struct AnimateReport {
   std::string scene, builder, device, driver;
   std::uint64_t triangles = 0, vertices = 0;
+  std::uint64_t instances = 0;  // of meshes that have these triangles
   std::uint32_t morton_bits = 30, width = 0, height = 0;
   bool walks_wide = false;
   double frames_per_second = 0;

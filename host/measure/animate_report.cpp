@@ -43,7 +43,7 @@ struct TimedPart {
 constexpr TimedPart timed_parts[] = {
     {"frame", "from picture to picture, by the host's clock", &AnimatedFrame::frame_ms},
     {"device", "of it on the device: one submit", &AnimatedFrame::device_ms},
-    {"vertices", "to where they are", &AnimatedFrame::vertices_ms},
+    {"vertices", "to where they are, or instances", &AnimatedFrame::vertices_ms},
     {"build", "triangles to tree, built or refitted", &AnimatedFrame::update_ms},
     {"wide", "the tree with eight children a node", &AnimatedFrame::wide_ms},
     {"trace", "camera rays to picture", &AnimatedFrame::trace_ms}};
@@ -96,6 +96,7 @@ Json to_json(const AnimateReport& report) {
                {"frames", report.frames.size()},
                {"skipped", report.skipped},
                {"update", word_of_update(report.update)}};
+  if (report.instances) json["instances"] = report.instances;
   for (const TimedPart& part : timed_parts)
     json[std::string(part.name) + "_ms"] = percentiles(report, part.value);
   const auto frames = static_cast<double>(std::max<std::size_t>(report.frames.size(), 1));
@@ -115,10 +116,13 @@ Json to_json(const AnimateReport& report) {
 }
 
 std::string text_of(const AnimateReport& report) {
-  std::string text = format("%s: %llu triangles, %zu frames of %ux%u by %s on %s, %s tree\n",
-                            report.scene.c_str(), static_cast<unsigned long long>(report.triangles),
-                            report.frames.size(), report.width, report.height, report.builder.c_str(),
-                            report.device.c_str(), report.walks_wide ? "wide" : "binary");
+  std::string text =
+      format("%s: %llu triangles", report.scene.c_str(), static_cast<unsigned long long>(report.triangles));
+  if (report.instances)
+    text += format(" in %llu instances of meshes", static_cast<unsigned long long>(report.instances));
+  text += format(", %zu frames of %ux%u by %s on %s, %s tree\n", report.frames.size(), report.width,
+                 report.height, report.builder.c_str(), report.device.c_str(),
+                 report.walks_wide ? "wide" : "binary");
   text += format("  --update %s: %llu trees built, %llu refitted\n", word_of_update(report.update),
                  static_cast<unsigned long long>(report.rebuilds),
                  static_cast<unsigned long long>(report.refits));

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "analysis/compare.h"
@@ -22,27 +21,12 @@ namespace coppice {
 
 namespace {
 
-constexpr std::uint32_t swarm_seed = 1;
 constexpr std::size_t checked_instance_rays = 5000;
-
-// The least power of two in which a swarm has about as much room an instance as a smaller one.
-int swarm_exponent(std::uint32_t instance_count) {
-  int exponent = 1;
-  while (1ull << (3 * (exponent - 1)) < instance_count) ++exponent;
-  return exponent;
-}
 
 std::vector<std::uint32_t> swarm_sizes(std::uint32_t most) {
   std::vector<std::uint32_t> sizes;
   for (std::uint64_t size = 1000; size <= most; size *= 10) sizes.push_back(static_cast<std::uint32_t>(size));
   return sizes.empty() ? std::vector{most} : sizes;
-}
-
-Scene swarm_seen(std::uint32_t instance_count) {
-  Scene scene = make_instances(3);  // for its meshes
-  const float radius = std::ldexp(1.0f, swarm_exponent(instance_count));
-  scene.camera = Camera{.position = {0, 0.9f * radius, 2.2f * radius}};
-  return scene;
 }
 
 // Instances of a few meshes on the device, and rays at them: all built and traced once and found right.
@@ -54,20 +38,23 @@ class SwarmBench {
         options_(options),
         builder_(builder),
         count_(instance_count),
-        scene_(swarm_seen(instance_count)),
+        scene_(make_instances(instance_count)),
         rays_(rays_through(make_film(scene_, options.camera, options.trace.width, options.trace.height, 1))),
         layout_(device.properties().max_block_bytes),
         plan_(planned()),
         executor_(device.device(), layout_) {
     upload();
     submit([&](Chain& chain) { append_all_meshes(chain, plan_); });
-    submit([&](Chain& chain) { append_frame(chain, 0); });
+    submit([&](Chain& chain) {
+      append_move(chain);
+      append_top(chain, plan_);
+    });
     check_top();
     check_hits();
   }
 
   BenchRow moves() {
-    return measured("instances_move", [&](Chain& chain) { append_move(chain, 1u << 24); });
+    return measured("instances_move", [&](Chain& chain) { append_move(chain); });
   }
 
   BenchRow top() {
@@ -105,6 +92,8 @@ class SwarmBench {
               layout_.add<Hit>("hits", rays_.size()),
               layout_.add<TraceCounters>("counters", 1),
               {}};
+    swarm_ = {layout_.add<InstanceTransform>("rest", count_, Memory::source),
+              layout_.add<uint>("turn", 1, Memory::source)};
     hit_instances_ = layout_.add<uint>("hit_instances", rays_.size());
     return plan;
   }
@@ -117,23 +106,17 @@ class SwarmBench {
           triangles_of(plan_, mesh),
           std::span<const Triangle>(arrays.triangles).subspan(part.first_triangle, part.triangle_count));
     }
-    std::vector<uint> mesh_index(count_);
-    for (std::uint32_t i = 0; i < count_; ++i) mesh_index[i] = i % static_cast<uint>(scene_.meshes.size());
+    constexpr uint turn = 1u << 24;
     for (const Ray& ray : rays_) misses_.push_back({ray.t_max, NO_TRIANGLE, 0, 0});
     executor_.upload(plan_.meshes, std::span<const MeshRange>(plan_.ranges));
-    executor_.upload(plan_.mesh_index, std::span<const uint>(mesh_index));
+    executor_.upload(plan_.mesh_index, std::span<const uint>(arrays.mesh_index));
+    executor_.upload(swarm_.rest, std::span<const InstanceTransform>(arrays.transforms));
+    executor_.upload(swarm_.turn, std::span<const uint>(&turn, 1));
     executor_.upload(slots_.rays, std::span<const Ray>(rays_));
     executor_.upload(slots_.hits, std::span<const Hit>(misses_));
   }
 
-  void append_move(Chain& chain, std::uint32_t turn) {
-    append_moves(chain, plan_, swarm_seed, turn, swarm_exponent(count_));
-  }
-
-  void append_frame(Chain& chain, std::uint32_t turn) {
-    append_move(chain, turn);
-    append_top(chain, plan_);
-  }
+  void append_move(Chain& chain) { append_moves(chain, plan_, swarm_, scene_.swarm->seed); }
 
   template <class Append>
   std::vector<Step> steps(const Append& append) {
@@ -218,6 +201,7 @@ class SwarmBench {
   std::vector<Hit> misses_;
   RaySlots slots_;
   Slot<uint> hit_instances_;
+  SwarmSlots swarm_;
   Layout layout_;
   InstancePlan plan_;
   GpuExecutor executor_;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <numeric>
 #include <stdexcept>
-#include <string>
 
 #include "stages/stages.h"
 
@@ -75,13 +74,9 @@ void append_all_meshes(Chain& chain, const InstancePlan& plan) {
   for (std::uint32_t mesh = 0; mesh < plan.ranges.size(); ++mesh) append_meshes(chain, plan, {&mesh, 1});
 }
 
-void append_moves(Chain& chain, const InstancePlan& plan, std::uint32_t seed, std::uint32_t turn,
-                  int exponent) {
-  if (exponent < -126 || exponent > 127)
-    throw std::invalid_argument("the radius of a swarm is 2^-126 to 2^127, not 2^" +
-                                std::to_string(exponent));
+void append_moves(Chain& chain, const InstancePlan& plan, const SwarmSlots& from, std::uint32_t seed) {
   chain.run(stages::move_instances,
-            {chain.at(plan.transforms), plan.instance_count, seed, turn, static_cast<uint>(exponent + 127)},
+            {chain.at(from.rest), chain.at(from.turn), chain.at(plan.transforms), plan.instance_count, seed},
             groups_of(plan.instance_count, MOVE_INSTANCES_GROUP));
 }
 

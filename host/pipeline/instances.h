@@ -50,10 +50,12 @@ BuildPlan mesh_plan(const InstancePlan& plan, std::uint32_t mesh);
 void append_meshes(Chain& chain, const InstancePlan& plan, std::span<const std::uint32_t> meshes);
 void append_all_meshes(Chain& chain, const InstancePlan& plan);
 
-// Transforms of a swarm (stage move_instances) at `turn`, in parts of a cycle of 2^32. Its radius is
-// 2^exponent, from -126 to 127, else std::invalid_argument.
-void append_moves(Chain& chain, const InstancePlan& plan, std::uint32_t seed, std::uint32_t turn,
-                  int exponent);
+// What transforms that move come from (stage move_instances).
+struct SwarmSlots {
+  Slot<InstanceTransform> rest;  // in: one an instance
+  Slot<uint> turn;               // in: one, in parts of a cycle of 2^32
+};
+void append_moves(Chain& chain, const InstancePlan& plan, const SwarmSlots& from, std::uint32_t seed);
 
 // From transforms, and the trees of the meshes, to the tree over the instances.
 void append_top(Chain& chain, const InstancePlan& plan);

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "pipeline/bounded_submits.h"
+#include "scene/instances.h"
 #include "stages/errors.h"
 #include "stages/stages.h"
 
@@ -27,13 +28,19 @@ MovingOptions for_scene(MovingOptions options, const Scene& scene) {
 
 FramePlan MovingFrames::plan_all(MovingFrames& frames, const SceneArrays& arrays) {
   Layout& layout = frames.layout_;
-  frames.vertices_ = plan_vertices(layout, frames.motion_, arrays.triangle_count());
+  const auto instances = static_cast<std::uint32_t>(arrays.mesh_index.size());
+  if (instances > 0 && frames.may_refit())
+    throw std::invalid_argument("the tree over instances is built anew every frame");
+  if (instances == 0) frames.vertices_ = plan_vertices(layout, frames.motion_, arrays.triangle_count());
+  if (frames.swarm_) frames.rest_ = layout.add<InstanceTransform>("rest", instances, Memory::source);
   const FrameOptions options{.build = frames.options_.build, .trace = frames.options_.trace};
   FramePlan plan = plan_frame(layout, arrays, options);
   if (frames.has_state())
     frames.refit_ = plan_refit(layout, plan.tree, &*plan.build, frames.options_.trace.max_turns);
   for (std::uint32_t i = 0; i < frames.options_.under_way; ++i) {
-    frames.slots_.push_back({{plan_motion(layout, frames.motion_), layout.add_mapped<Film>("film_told", 1)},
+    frames.slots_.push_back({{instances == 0 ? plan_motion(layout, frames.motion_) : MotionSlots{},
+                              layout.add_mapped<uint>("turn_told", frames.swarm_ ? 1 : 0),
+                              layout.add_mapped<Film>("film_told", 1)},
                              {layout.add_mapped<uint>("image_left", plan.trace.image.count),
                               layout.add_mapped<BuildState>("state_left", 1),
                               layout.add_mapped<TraceCounters>("counters_left", 1),
@@ -44,14 +51,15 @@ FramePlan MovingFrames::plan_all(MovingFrames& frames, const SceneArrays& arrays
 
 MovingFrames::MovingFrames(Device& device, const Scene& scene, const MovingOptions& options)
     : motion_(motion_of(scene)),
+      swarm_(scene.instances.empty() ? std::nullopt : scene.swarm),
       options_(for_scene(options, scene)),
       layout_(device.properties().max_block_bytes),
       plan_(plan_all(*this, scene_arrays(scene))),
       executor_(device, layout_),
       chooser_(options.update) {
   if (options_.under_way == 0) throw std::invalid_argument("no frame may be under way");
-  upload_frame(executor_, plan_.tree, plan_.trace, scene_arrays(scene), Film{});
-  upload_vertices(executor_, vertices_, motion_, std::span<const uvec3>(scene.indices));
+  upload_scene(scene);
+  build_meshes();
   const auto record = [&](const FrameSlots& slots, bool rebuilds) {
     Chain chain = executor_.chain();
     append(chain, slots, rebuilds);
@@ -60,6 +68,28 @@ MovingFrames::MovingFrames(Device& device, const Scene& scene, const MovingOptio
   for (const FrameSlots& slots : slots_) {
     builds_.push_back(record(slots, true));
     if (may_refit()) refits_.push_back(record(slots, false));
+  }
+}
+
+void MovingFrames::upload_scene(const Scene& scene) {
+  const SceneArrays arrays = scene_arrays(scene);
+  upload_frame(executor_, plan_, arrays, Film{});
+  if (swarm_) executor_.upload(rest_, std::span<const InstanceTransform>(arrays.transforms));
+  if (!plan_.levels) upload_vertices(executor_, vertices_, motion_, std::span<const uvec3>(scene.indices));
+}
+
+// Each in a submit of its own, as nobody waits for a frame yet.
+void MovingFrames::build_meshes() {
+  if (!plan_.levels) return;
+  const InstancePlan& instances = plan_.levels->plan;
+  for (std::uint32_t mesh = 0; mesh < instances.ranges.size(); ++mesh) {
+    Chain chain = executor_.chain();
+    append_meshes(chain, instances, {&mesh, 1});
+    executor_.record(chain.steps()).submit_and_wait(piece_limit_seconds);
+  }
+  for (const BuildState& state : executor_.read(instances.mesh_states)) {
+    const std::string errors = describe_error_word(state.error_word);
+    if (!errors.empty()) throw DeviceError("the tree of a mesh: " + errors);
   }
 }
 
@@ -72,30 +102,42 @@ MovingFrames::~MovingFrames() {
   }
 }
 
-void MovingFrames::append_update(Chain& chain, bool rebuilds) const {
+void MovingFrames::append_places(Chain& chain, const Told& told) const {
+  if (!plan_.levels) append_vertices(chain, vertices_, told.motion, motion_);
+  if (swarm_) append_moves(chain, plan_.levels->plan, {rest_, told.turn}, swarm_->seed);
+}
+
+void MovingFrames::append_tree(Chain& chain, bool rebuilds) const {
   const TreeSlots& tree = plan_.tree;
-  if (rebuilds) {
+  if (plan_.levels) {
+    append_top(chain, plan_.levels->plan);
+  } else if (rebuilds) {
     append_build(chain, *plan_.build, {triangles_of(chain, vertices_), {}});
     if (may_refit()) append_refit_order(chain, tree, refit_);
   } else {
     append_triangles(chain, tree.triangles, triangles_of(chain, vertices_));
     append_refit(chain, tree, refit_);
   }
+}
+
+void MovingFrames::append_update(Chain& chain, bool rebuilds) const {
+  append_tree(chain, rebuilds);
   chain.mark();
-  if (plan_.wide && rebuilds) append_wide(chain, tree, *plan_.wide);
-  if (plan_.wide && !rebuilds) append_wide_boxes(chain, tree, *plan_.wide);
-  if (options_.tree_cost) append_tree_cost(chain, tree, refit_);
+  if (plan_.wide && rebuilds) append_wide(chain, plan_.tree, *plan_.wide);
+  if (plan_.wide && !rebuilds) append_wide_boxes(chain, plan_.tree, *plan_.wide);
+  if (options_.tree_cost) append_tree_cost(chain, plan_.tree, refit_);
   chain.mark();
 }
 
 void MovingFrames::append(Chain& chain, const FrameSlots& slots, bool rebuilds) const {
-  append_vertices(chain, vertices_, slots.told.motion, motion_);
+  append_places(chain, slots.told);
   chain.mark();
   append_update(chain, rebuilds);
   TracePlan trace = plan_.trace;
   trace.film = slots.told.film;
   trace.image = slots.left.image;
-  append_trace(chain, plan_.tree, trace);
+  TracePieces pieces = plan_.pieces(trace);
+  while (!pieces.done()) pieces.append(chain, ~std::uint64_t{0});
   append_copy_out(chain, plan_.tree.state, slots.left.state);
   append_copy_out(chain, trace.counters, slots.left.counters);
   if (has_state()) append_copy_out(chain, refit_.state, slots.left.refit);
@@ -107,11 +149,18 @@ std::vector<Step> MovingFrames::steps(bool rebuilds) const {
   return std::move(chain.steps());
 }
 
+void MovingFrames::tell(const Told& told, double seconds, const Film& film) {
+  executor_.upload(told.film, std::span<const Film>(&film, 1));
+  if (!plan_.levels)
+    upload_step(executor_, told.motion, motion_step(motion_, pose_at(motion_, seconds), seconds));
+  if (!swarm_) return;
+  const uint turn = turn_at(*swarm_, seconds);
+  executor_.upload(told.turn, std::span<const uint>(&turn, 1));
+}
+
 void MovingFrames::submit(double seconds, const Film& film) {
   if (!has_room()) throw std::logic_error("as many frames as there may be are under way");
-  const FrameSlots& slots = slots_[next_slot_];
-  upload_step(executor_, slots.told.motion, motion_step(motion_, pose_at(motion_, seconds), seconds));
-  executor_.upload(slots.told.film, std::span<const Film>(&film, 1));
+  tell(slots_[next_slot_].told, seconds, film);
   const bool rebuilds = !chooser_.next_refits();
   (rebuilds ? builds_ : refits_)[next_slot_].submit();
   waiting_.push_back({next_slot_, seconds, rebuilds});

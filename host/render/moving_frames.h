@@ -25,8 +25,8 @@ struct MovingOptions {
 // What came of a frame, in milliseconds of the device's clock. Parts are 0 where it has none.
 struct MovingFrame {
   double seconds = 0;         // of the scene
-  double vertices_ms = 0;     // to where they are
-  double update_ms = 0;       // triangles, and the tree built or refitted
+  double vertices_ms = 0;     // to where they are; or instances
+  double update_ms = 0;       // triangles, and the tree built or refitted; or boxes of instances and the tree
   double wide_ms = 0;         // and of the tree's cost
   double trace_ms = 0;        // camera rays to picture
   double total_ms = 0;        // of the submit; of the host's clock where the device has none
@@ -39,15 +39,17 @@ struct MovingFrame {
   std::span<const uint> image;  // RGBA8; until so many more frames as may be under way have been submitted
 };
 
-// A scene's frames, each in one submit: vertices to where they are, triangles, tree, picture. The tree is
-// that of the frame, built, or that of the last build, refitted; the picture is the same (with the watertight
-// and the robust test, as it does not depend on the tree). Submits are recorded once; what a frame is told
-// goes through as many slots as frames may be under way. A scene without
-// motion stands still.
+// A scene's frames, each in one submit: vertices to where they are, triangles, tree, picture. Of a scene with
+// instances, whose meshes stand still and get their trees before the first frame: transforms of a swarm,
+// boxes and the tree over the instances, picture. The tree is that of the frame, built, or that of the last
+// build, refitted; the picture is the same (with the watertight and the robust test, as it does not depend on
+// the tree). Submits are recorded once; what a frame is told goes through as many slots as frames may be
+// under way. A scene without motion stands still.
 class MovingFrames {
  public:
-  // Throws DeviceError if the device's memory does not hold it, LayoutError if a slot is too large, and what
-  // plan_vertices throws. Device and scene must outlive it.
+  // Throws DeviceError if the device's memory does not hold it or a mesh's tree does not come out,
+  // LayoutError if a slot is too large, what plan_vertices and plan_frame throw, and std::invalid_argument
+  // for instances with refits. Device and scene must outlive it.
   MovingFrames(Device& device, const Scene& scene, const MovingOptions& options);
   ~MovingFrames();
   MovingFrames(const MovingFrames&) = delete;
@@ -72,6 +74,7 @@ class MovingFrames {
   // Of a frame under way.
   struct Told {
     MotionSlots motion;
+    Slot<uint> turn;  // of a swarm
     Slot<Film> film;
   };
   struct Left {
@@ -92,7 +95,12 @@ class MovingFrames {
 
   static FramePlan plan_all(MovingFrames& frames, const SceneArrays& arrays);
   void append(Chain& chain, const FrameSlots& slots, bool rebuilds) const;
+  void append_places(Chain& chain, const Told& told) const;
   void append_update(Chain& chain, bool rebuilds) const;
+  void append_tree(Chain& chain, bool rebuilds) const;
+  void upload_scene(const Scene& scene);
+  void build_meshes();
+  void tell(const Told& told, double seconds, const Film& film);
   bool may_refit() const { return options_.update != Update::rebuild; }
   bool has_state() const { return may_refit() || options_.tree_cost; }
   MovingFrame outcome(const Recorder::Times& times, const Left& left);
@@ -100,9 +108,11 @@ class MovingFrames {
   const T* mapped(const Slot<T>& slot);
 
   Motion motion_;
+  std::optional<Swarm> swarm_;
   MovingOptions options_;
   Layout layout_;
-  MovingVertices vertices_;
+  MovingVertices vertices_;       // empty of a scene with instances, as what they are told
+  Slot<InstanceTransform> rest_;  // of a swarm
   std::vector<FrameSlots> slots_;
   RefitPlan refit_;  // empty where no frame is refitted; as what stands above, planned with plan_
   FramePlan plan_;

@@ -96,6 +96,11 @@ InstanceTransform rows_of(const glm::mat4x3& t) {
           {t[0].z, t[1].z, t[2].z}, t[3].z};
 }
 
+std::uint32_t turn_at(const Swarm& swarm, double seconds) {
+  const double cycles = seconds / swarm.seconds;
+  return static_cast<std::uint32_t>(static_cast<std::uint64_t>((cycles - std::floor(cycles)) * 0x1p32));
+}
+
 std::uint64_t instanced_triangles(const Scene& scene) {
   std::uint64_t count = 0;
   for (const Instance& instance : scene.instances) count += scene.meshes[instance.mesh].triangle_count;
@@ -119,6 +124,7 @@ Scene flattened(Scene scene) {
   scene.material_index = std::move(flat.material_index);
   scene.meshes.clear();
   scene.instances.clear();
+  scene.swarm.reset();
   return scene;
 }
 
@@ -174,6 +180,7 @@ Scene make_instances(std::uint32_t instance_count) {
   const float spread = 2.0f * std::cbrt(static_cast<float>(instance_count));
   for (std::uint32_t i = 0; i < instance_count; ++i)
     scene.instances.push_back({i % 3, random_place(spread, i % 2 == 1, places)});
+  scene.swarm = Swarm{};
   scene.camera = Camera{.position = glm::vec3{0.3f, 0.5f, 1.8f} * (spread + 2.0f)};
   return scene;
 }

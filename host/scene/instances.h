@@ -10,16 +10,20 @@ namespace coppice {
 // A transform of a scene as the stages take it.
 InstanceTransform rows_of(const glm::mat4x3& transform);
 
+// The part of a cycle at that time, in parts of 2^32: what the stage takes.
+std::uint32_t turn_at(const Swarm& swarm, double seconds);
+
 // How many triangles all instances have together.
 std::uint64_t instanced_triangles(const Scene& scene);
 
 // The scene with every instance's triangles in their place, instance after instance, and no instances:
 // corners are rounded as on the device (docs/numerics.md, "Instances"), so a hit is the same one here and
-// there. A scene without instances as it is. Throws InputError for more triangles than 32 bits count.
+// there. They stand still from then on. A scene without instances as it is. Throws InputError for more
+// triangles than 32 bits count.
 Scene flattened(Scene scene);
 
 // "instances:N": a swarm of so many instances of three meshes, stones, ferns and boxes, turned, scaled and
-// every other one mirrored. They stand about as close however many there are.
+// every other one mirrored, on their way around the axis y. They stand about as close however many there are.
 Scene make_instances(std::uint32_t instance_count);
 
 // How many triangles they have together.

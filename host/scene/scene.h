@@ -54,6 +54,13 @@ struct Instance {
   glm::mat4x3 transform{1.0f};  // from the space of the mesh to the scene; any floats
 };
 
+// All instances of a scene move: around the axis y, each at a speed of its own, turning on the way
+// (MoveInstancesArgs). At second 0 they are where Instance::transform has them.
+struct Swarm {
+  std::uint32_t seed = 1;
+  double seconds = 32;  // a whole cycle; positive
+};
+
 struct Motion;  // scene/motion.h
 
 // An indexed triangle mesh with what it takes to light and see it. +y is up; the unit of length is the
@@ -72,6 +79,7 @@ struct Scene {
   // are.
   std::vector<InstancedMesh> meshes;
   std::vector<Instance> instances;
+  std::optional<Swarm> swarm;                      // none: the instances stand still
   std::vector<Material> materials = {Material{}};  // never empty
   std::optional<Camera> camera;                    // absent: frame_scene chooses one
   DirectionalLight light;

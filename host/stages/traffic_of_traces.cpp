@@ -71,7 +71,7 @@ Bytes trace_candidates(const TraceCandidatesArgs& a, const RunCounts& counts) {
 }
 
 Bytes move_instances(const MoveInstancesArgs& a, const RunCounts&) {
-  return Bytes{a.instance_count} * sizeof(InstanceTransform);
+  return Bytes{a.instance_count} * 2 * sizeof(InstanceTransform);
 }
 
 // Meshes and their roots are few.

@@ -1,30 +1,18 @@
-#include <cmath>
 #include <numbers>
 
-#include "interface/instances.h"
+#include "twins/finite.h"
+#include "twins/instance.h"
 
 namespace coppice::twins {
 
 namespace {
 
 // PCG, as in bounce_rays.
-class SwarmNumbers {
- public:
-  explicit SwarmNumbers(uint state) : state_(state) { word(); }
-
-  uint word() {
-    state_ = state_ * 747796405u + 2891336453u;
-    const uint mixed = ((state_ >> ((state_ >> 28) + 4)) ^ state_) * 277803737u;
-    return (mixed >> 22) ^ mixed;
-  }
-  float part() { return static_cast<float>(word() >> 8) / 0x1p24f; }  // [0, 1)
-  float signed_part() {
-    return static_cast<float>(static_cast<std::int32_t>(word()) >> 8) / 0x1p23f;
-  }  // [-1, 1)
-
- private:
-  uint state_;
-};
+uint pcg(uint counter) {
+  const uint state = counter * 747796405u + 2891336453u;
+  const uint mixed = ((state >> ((state >> 28) + 4)) ^ state) * 277803737u;
+  return (mixed >> 22) ^ mixed;
+}
 
 struct OnCircle {
   float cosine, sine;
@@ -50,26 +38,31 @@ OnCircle on_circle(uint turn) {
   }
 }
 
+// a b + c d, each operation rounded.
+float sum_of_products(float a, float b, float c, float d) { return flushed(flushed(a * b) + flushed(c * d)); }
+
 }  // namespace
 
 void move_instances(const MoveInstancesArgs& args) {
-  const float swarm = std::ldexp(1.0f, static_cast<int>(args.exponent) - 127);
+  const uint turn = args.turn[0];
   for (uint i = 0; i < args.instance_count; ++i) {
-    SwarmNumbers random(i ^ (args.seed * 0x9e3779b9u));
-    const float radius = swarm * (0.125f + 0.875f * random.part());
-    const float height = swarm * 0.5f * random.signed_part();
-    const float size = 0.25f + 0.75f * random.part();
-    const uint laps = 1 + random.word() / (1u << 30);
-    const OnCircle orbit = on_circle(random.word() + laps * args.turn);
-    const OnCircle tumble = on_circle(random.word() + 2 * laps * args.turn);
-    const float mirrored = i % 2 == 0 ? size : -size;
-    args.transforms[i] = {
-        {orbit.cosine * mirrored, orbit.sine * tumble.sine * size, orbit.sine * tumble.cosine * size},
-        radius * orbit.cosine,
-        {0, tumble.cosine * size, -tumble.sine * size},
-        height,
-        {-orbit.sine * mirrored, orbit.cosine * tumble.sine * size, orbit.cosine * tumble.cosine * size},
-        radius * orbit.sine};
+    Affine moved(args.rest[i]);
+    const uint laps = 1 + pcg(i ^ (args.seed * 0x9e3779b9u)) / (1u << 30);
+    const OnCircle tumble = on_circle(2 * laps * turn), orbit = on_circle(laps * turn);
+    for (auto& row : moved.at) {
+      const float y = row[1], z = row[2];
+      row[1] = sum_of_products(tumble.cosine, y, tumble.sine, z);
+      row[2] = sum_of_products(tumble.cosine, z, -tumble.sine, y);
+    }
+    for (int column = 0; column < 4; ++column) {
+      float &x = moved.at[0][column], &z = moved.at[2][column];
+      const float old_x = x;
+      x = sum_of_products(orbit.cosine, old_x, -orbit.sine, z);
+      z = sum_of_products(orbit.sine, old_x, orbit.cosine, z);
+    }
+    const auto& at = moved.at;
+    args.transforms[i] = {{at[0][0], at[0][1], at[0][2]}, at[0][3], {at[1][0], at[1][1], at[1][2]}, at[1][3],
+                          {at[2][0], at[2][1], at[2][2]}, at[2][3]};
   }
 }
 

@@ -49,14 +49,15 @@ INTERFACE_BUFFER(InstanceTransformBuffer, InstanceTransform, 16)
 INTERFACE_BUFFER(MeshRangeBuffer, MeshRange, 16)
 INTERFACE_BUFFER(PlacedInstanceBuffer, PlacedInstance, 16)
 
-// A swarm on its way around the axis y, from nothing but a time: each instance with an orbit, an attitude and
-// a size of its own, every other one mirrored.
+// Instances on their way around the axis y from where they rest, 1 to 4 laps a cycle, while each turns about the
+// axis x of its mesh twice as often. At turn 0 they are where they rest, bit for bit, but that denormals and -0
+// are +0, as they are in and out of every operation.
 struct MoveInstancesArgs {
-  InstanceTransformBuffer transforms;  // out: instance_count
+  READS(InstanceTransformBuffer) rest;  // instance_count
+  READS(UintBuffer) turn;               // one: the time, in parts of a whole cycle of 2^32
+  InstanceTransformBuffer transforms;   // out: instance_count
   uint instance_count;
-  uint seed;
-  uint turn;      // the time, in parts of a whole cycle of 2^32
-  uint exponent;  // the swarm's radius is 2^(exponent - 127), the largest scale 1
+  uint seed;  // of the laps
 };
 
 struct InstanceBoxesArgs {

@@ -77,6 +77,7 @@ struct InstanceSlots {
   InstancePlan plan;
   RaySlots rays;
   Slot<uint> hit_instances;
+  SwarmSlots swarm;  // for those who move them
 };
 
 inline InstanceSlots plan_for(Layout& layout, const InstancesToTrace& scene, std::size_t ray_count,
@@ -90,6 +91,8 @@ inline InstanceSlots plan_for(Layout& layout, const InstancesToTrace& scene, std
                 layout.add<TraceCounters>("counters", 1),
                 {}};
   slots.hit_instances = layout.add<uint>("hit_instances", ray_count);
+  slots.swarm = {layout.add<InstanceTransform>("rest", slots.plan.instance_count),
+                 layout.add<uint>("turn", 1)};
   return slots;
 }
 
@@ -103,6 +106,9 @@ void upload_instances(Executor& executor, const InstanceSlots& slots, const Inst
     executor.upload(triangles_of(slots.plan, mesh), std::span<const Triangle>(scene.meshes[mesh]));
   executor.upload(slots.plan.mesh_index, std::span<const uint>(scene.mesh_index));
   executor.upload(slots.plan.transforms, std::span<const InstanceTransform>(scene.transforms));
+  constexpr uint turn = 12345;
+  executor.upload(slots.swarm.rest, std::span<const InstanceTransform>(scene.transforms));
+  executor.upload(slots.swarm.turn, std::span<const uint>(&turn, 1));
   executor.upload(slots.rays.rays, rays);
   executor.upload(slots.rays.hits, std::span<const Hit>(misses));
 }
