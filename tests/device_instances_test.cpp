@@ -144,7 +144,9 @@ TEST_F(DeviceInstances, SwarmsMove) {
   Layout layout(test_device().properties().max_block_bytes);
   const InstancePlan plan = plan_instances(layout, {}, count, {});
   const SwarmSlots swarm{layout.add<InstanceTransform>("rest", count), layout.add<uint>("turn", 1)};
-  const std::vector<InstanceTransform> rest = scene_arrays(make_instances(count)).transforms;
+  std::vector<InstanceTransform> rest = scene_arrays(make_instances(count)).transforms;
+  for (InstanceTransform& t : rest)
+    for (vec3* const row : {&t.row_x, &t.row_y, &t.row_z}) *row += vec3(0);  // +0 for -0
   LockstepExecutor executor(test_device(), layout);
   const auto at = [&](std::span<const InstanceTransform> from, std::uint32_t seed, uint turn) {
     executor.upload(swarm.rest, from);
