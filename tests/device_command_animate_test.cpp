@@ -122,6 +122,27 @@ TEST_F(CommandAnimate, MovesInstances) {
   EXPECT_NE(text.out.find("in 200 instances of meshes"), std::string::npos) << text.out;
 }
 
+// A scene file says that its objects are instances, and that they move.
+TEST_F(CommandAnimate, MovesTheObjectsOfASceneFile) {
+  const std::string objects =
+      R"("meshes": {"m": {"built_in": "hard:sphere:200"}}, "camera": {"position": [0, 3, 40], "target": [0, 0, 0]},
+         "objects": [{"mesh": "m", "translation": [5, 0, 0]}, {"mesh": "m", "scale": [-1, 2, 1]},
+                     {"mesh": "m", "translation": [-4, 3, 1], "rotation": [0, 0, 1, 1]}])";
+  write("flat.json", "{" + objects + "}");
+  write("swarm.json",
+        "{" + objects + R"(, "instances": {"swarm": {"seconds": 10}}, "frames_per_second": 1})");
+  const json flat = json_of(run("render flat.json --size 48x32 -o flat.png --json -"));
+  const json still = json_of(run("render swarm.json --size 48x32 -o swarm.png --json -"));
+  EXPECT_EQ(still["instances"], 3);
+  EXPECT_GT(still["hits"], 50);
+  EXPECT_EQ(still["image_hash"], flat["image_hash"]);
+  const json report = json_of(run("animate swarm.json --size 48x32 --frames 3 --json -"));
+  EXPECT_EQ(report["instances"], 3);
+  EXPECT_EQ(report["frames_per_second"], 1.0);
+  EXPECT_EQ(report["frame_hashes"][0], still["image_hash"]);
+  EXPECT_NE(report["frame_hashes"][1], report["frame_hashes"][2]);
+}
+
 TEST_F(CommandAnimate, RefusesWhatItCannotDo) {
   write("file", "no folder");
   const struct {

@@ -118,6 +118,7 @@ class AnimateCommand : public Command {
     runs.last = last_;
     runs.frames_per_second = frames_per_second_ > 0 ? frames_per_second_
                              : scene.motion         ? scene.motion->frames_per_second
+                             : scene.swarm          ? scene.swarm->frames_per_second
                                                     : 30;
     if (skip_existing_) runs.skip = [&](std::uint32_t number) { return pictures.has(number); };
     runs.picture = [&](std::uint32_t number, std::span<const uint> image) {

@@ -58,7 +58,8 @@ struct Instance {
 // (MoveInstancesArgs). At second 0 they are where Instance::transform has them.
 struct Swarm {
   std::uint32_t seed = 1;
-  double seconds = 32;  // a whole cycle; positive
+  double seconds = 32;            // a whole cycle; positive
+  double frames_per_second = 30;  // that the scene asks for; positive
 };
 
 struct Motion;  // scene/motion.h

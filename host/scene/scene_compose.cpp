@@ -15,23 +15,6 @@ namespace {
 
 constexpr std::size_t MOST_COMPOSED_JOINTS = 65536;  // what Motion::joints can name
 
-// From a part's coordinates, of which an offset may have been subtracted.
-glm::dmat4 from_offset(const Scene& scene) {
-  glm::dmat4 result(1.0);
-  result[3] = glm::dvec4(direction_to_scene(scene, scene.offset), 1);
-  return result;
-}
-
-Camera moved(const Camera& camera, const glm::dmat4& by) {
-  Camera result = camera;
-  result.position = glm::vec3(by * glm::dvec4(camera.position, 1));
-  result.target = glm::vec3(by * glm::dvec4(camera.target, 1));
-  const glm::dvec3 up = glm::dmat3(by) * glm::dvec3(camera.up);
-  const double length = glm::length(up);
-  if (length > 0 && std::isfinite(length)) result.up = glm::vec3(up / length);
-  return result;
-}
-
 // The rigs of the parts, each below its node. Joint 0 stands still.
 class ComposedRig : public Rig {
  public:
@@ -59,7 +42,7 @@ class ComposedRig : public Rig {
       for (const glm::mat4& joint : own.joints) result.joints.emplace_back(place * glm::dmat4(joint));
       result.morph_weights.insert(result.morph_weights.end(), own.morph_weights.begin(),
                                   own.morph_weights.end());
-      if (part.gives_camera && own.camera) result.camera = moved(*own.camera, place);
+      if (part.gives_camera && own.camera) result.camera = moved_camera(*own.camera, place);
     }
     if (camera && camera->moves()) result.camera = camera->at(seconds);
     return result;
@@ -202,7 +185,7 @@ void Composer::add(const ScenePart& part, const glm::dmat4& place) {
     scene_.material_index.push_back(first_material + index);
   scene_.materials.insert(scene_.materials.end(), scene.materials.begin(), scene.materials.end());
   if (scene.camera && !scene_.camera && !from_.camera) {
-    scene_.camera = moved(*scene.camera, place * from_offset(scene));
+    scene_.camera = moved_camera(*scene.camera, place * from_offset(scene));
     scene_.camera->position = glm::vec3(glm::dvec3(scene_.camera->position) - offset_);
     scene_.camera->target = glm::vec3(glm::dvec3(scene_.camera->target) - offset_);
     if (!is_finite(scene_.camera->position) || !is_finite(scene_.camera->target)) {
@@ -275,6 +258,22 @@ Camera CameraTracks::at(double seconds) const {
     camera.vertical_fov_degrees = static_cast<float>(std::clamp(degrees[0], 0.01, 179.0));
   }
   return camera;
+}
+
+glm::dmat4 from_offset(const Scene& scene) {
+  glm::dmat4 result(1.0);
+  result[3] = glm::dvec4(direction_to_scene(scene, scene.offset), 1);
+  return result;
+}
+
+Camera moved_camera(const Camera& camera, const glm::dmat4& by) {
+  Camera result = camera;
+  result.position = glm::vec3(by * glm::dvec4(camera.position, 1));
+  result.target = glm::vec3(by * glm::dvec4(camera.target, 1));
+  const glm::dvec3 up = glm::dmat3(by) * glm::dvec3(camera.up);
+  const double length = glm::length(up);
+  if (length > 0 && std::isfinite(length)) result.up = glm::vec3(up / length);
+  return result;
 }
 
 Scene compose(Composition composition) { return Composer(std::move(composition)).compose(); }

@@ -41,6 +41,26 @@ struct Composition {
 // triangles or joints than a scene can have; the message is without a file.
 Scene compose(Composition composition);
 
+// Meshes that stand still, once each, and where they are placed.
+struct InstanceComposition {
+  struct Placed {
+    std::uint32_t mesh;  // into meshes
+    glm::dmat4 place;
+  };
+  std::vector<Scene> meshes;  // stood up, not brought into range; without motion
+  std::vector<Placed> placed;
+  std::optional<Camera> camera{};  // else that of the first placed mesh that has one
+};
+
+// One scene with all of them as instances, near the origin if they are far from it for their size. Throws
+// InputError, without a file, for more triangles than a scene can have.
+Scene compose_instances(const InstanceComposition& composition);
+
+// From a part's coordinates, of which an offset may have been subtracted.
+glm::dmat4 from_offset(const Scene& scene);
+
+Camera moved_camera(const Camera& camera, const glm::dmat4& by);
+
 // Every triangle with vertices of its own, in order. The scene has no motion.
 void unshare_vertices(Scene& scene);
 

@@ -12,6 +12,7 @@
 #include "scene/obj_file.h"
 #include "scene/printable.h"
 #include "scene/scene_compose.h"
+#include "scene/scene_file_instances.h"
 #include "scene/scene_file_meshes.h"
 #include "scene/scene_file_tracks.h"
 #include "scene/scene_source.h"
@@ -49,14 +50,21 @@ class SceneFileReader {
   void check_parents(const json& objects);
   Scene mesh_of(const std::string& mesh, const std::string& pointer);
   void add_part(std::uint32_t node, const json& object, const std::string& pointer);
+  void add_instance(std::uint32_t node, const json& object, const std::string& pointer);
+  void set_material(Scene& mesh, const json& object, const std::string& pointer);
   void add_deformation(ScenePart& part, const json& deform, const std::string& pointer);
   void read_light(Scene& scene) const;
   void read_camera();
+  bool is_instanced() const { return file_.contains("instances"); }
+  Scene composed();
 
   const json& file_;
   const std::string& name_;
   const SceneFileSources& sources_;
   Composition composition_;
+  InstanceComposition instances_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> placed_;             // a mesh of instances_ and a node
+  std::map<std::pair<std::string, std::string>, std::uint32_t> instanced_;  // by mesh and material
   std::map<std::string, Scene> meshes_;
   std::vector<std::string> warnings_;
 };
@@ -113,6 +121,33 @@ void SceneFileReader::add_deformation(ScenePart& part, const json& from, const s
   part.deformation = deformation;
 }
 
+void SceneFileReader::set_material(Scene& mesh, const json& object, const std::string& pointer) {
+  if (!object.contains("material")) return;
+  const std::string material = object["material"].get<std::string>();
+  if (!file_.contains("materials") || !file_["materials"].contains(material)) {
+    fail_at(name_, pointer + "/material",
+            "no material '" + printable(std::string_view(material)) +
+                "', there are: " + known_keys(file_, "materials"));
+  }
+  mesh.materials = {scene_file_material(material, file_["materials"][material])};
+  std::fill(mesh.material_index.begin(), mesh.material_index.end(), 0u);
+}
+
+// Each mesh is opened and kept once, with each of its materials.
+void SceneFileReader::add_instance(std::uint32_t node, const json& object, const std::string& pointer) {
+  const std::string name = object["mesh"].get<std::string>();
+  const std::string material = object.contains("material") ? "m" + object["material"].get<std::string>() : "";
+  const auto next = static_cast<std::uint32_t>(instances_.meshes.size());
+  const auto [known, is_new] = instanced_.try_emplace({name, material}, next);
+  placed_.emplace_back(known->second, node);
+  if (!is_new) return;
+  Scene mesh = mesh_of(name, pointer + "/mesh");
+  if (mesh.motion)
+    fail_at(name_, pointer + "/mesh", shortened(object["mesh"]) + " moves, with \"instances\" none may");
+  set_material(mesh, object, pointer);
+  instances_.meshes.push_back(std::move(mesh));
+}
+
 void SceneFileReader::add_part(std::uint32_t node, const json& object, const std::string& pointer) {
   for (const char* const key : {"material", "deform"}) {
     if (object.contains(key) && !object.contains("mesh")) {
@@ -120,19 +155,11 @@ void SceneFileReader::add_part(std::uint32_t node, const json& object, const std
     }
   }
   if (!object.contains("mesh")) return;
+  if (is_instanced()) return add_instance(node, object, pointer);
   ScenePart part;
   part.node = node;
   part.scene = mesh_of(object["mesh"].get<std::string>(), pointer + "/mesh");
-  if (object.contains("material")) {
-    const std::string material = object["material"].get<std::string>();
-    if (!file_.contains("materials") || !file_["materials"].contains(material)) {
-      fail_at(name_, pointer + "/material",
-              "no material '" + printable(std::string_view(material)) +
-                  "', there are: " + known_keys(file_, "materials"));
-    }
-    part.scene.materials = {scene_file_material(material, file_["materials"][material])};
-    std::fill(part.scene.material_index.begin(), part.scene.material_index.end(), 0u);
-  }
+  set_material(part.scene, object, pointer);
   if (object.contains("deform")) add_deformation(part, object["deform"], pointer + "/deform");
   composition_.parts.push_back(std::move(part));
 }
@@ -229,14 +256,26 @@ void stand_up_whole(Scene& scene, std::string_view up) {
   scene.camera = camera;
 }
 
+Scene SceneFileReader::composed() {
+  if (!is_instanced()) return compose(std::move(composition_));
+  if (composition_.camera) instances_.camera = composition_.camera->at(0);
+  const std::vector<glm::dmat4> places = composition_.nodes.transforms(0);
+  for (const auto& [mesh, node] : placed_) instances_.placed.push_back({mesh, places[node]});
+  Scene scene = compose_instances(instances_);
+  if (scene.instances.empty()) return scene;
+  scene.swarm = read_swarm(file_["instances"], composition_.frames_per_second);
+  return scene;
+}
+
 Scene SceneFileReader::read() {
+  if (is_instanced()) check_stands_still(file_, name_);
   read_objects();
   read_camera();
   composition_.frames_per_second = file_.value("frames_per_second", 30.0);
   if (file_.contains("duration")) composition_.duration = file_["duration"].get<double>();
   Scene scene;
   try {
-    scene = compose(std::move(composition_));
+    scene = composed();
   } catch (const InputError& error) {
     fail_at(name_, "/objects", error.what());
   }
