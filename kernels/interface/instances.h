@@ -49,9 +49,9 @@ INTERFACE_BUFFER(InstanceTransformBuffer, InstanceTransform, 16)
 INTERFACE_BUFFER(MeshRangeBuffer, MeshRange, 16)
 INTERFACE_BUFFER(PlacedInstanceBuffer, PlacedInstance, 16)
 
-// Instances on their way around the axis y from where they rest, 1 to 4 laps a cycle, while each turns about the
-// axis x of its mesh twice as often. At turn 0 they are where they rest, bit for bit, but that denormals and -0
-// are +0, as they are in and out of every operation.
+// Instances on their way around the axis y from where they rest, 1 to 4 laps a cycle, while each turns about
+// the axis x of its mesh twice as often. At turn 0 they are where they rest, bit for bit, but that denormals
+// and -0 are +0, as they are in and out of every operation.
 struct MoveInstancesArgs {
   READS(InstanceTransformBuffer) rest;  // instance_count
   READS(UintBuffer) turn;               // one: the time, in parts of a whole cycle of 2^32
