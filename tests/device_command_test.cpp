@@ -310,6 +310,7 @@ TEST_F(Command, InstancesAreRenderedByEveryTracer) {
     hashes.insert(report["image_hash"].get<std::string>());
   }
   EXPECT_EQ(hashes.size(), 1u);
+  fs::remove("out.png");
   expect_refused("render instances:0 -o out.png", 1, "instances");
   const Outcome too_many = run_in(4'000'000, "render instances:67107840 -o out.png");
   EXPECT_EQ(too_many.status, 1);
