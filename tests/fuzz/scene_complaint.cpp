@@ -53,6 +53,17 @@ std::string complaint_about_motion(const Scene& scene, const Motion& motion) {
   return "";
 }
 
+std::string complaint_about_instances(const Scene& scene) {
+  for (const InstancedMesh& mesh : scene.meshes) {
+    if (std::uint64_t{mesh.first_triangle} + mesh.triangle_count > scene.indices.size()) return "mesh";
+  }
+  for (const Instance& instance : scene.instances) {
+    if (instance.mesh >= scene.meshes.size()) return "mesh of an instance";
+  }
+  if (scene.swarm && (!(scene.swarm->seconds > 0) || scene.instances.empty())) return "swarm";
+  return "";
+}
+
 }  // namespace
 
 bool is_one_line(const std::string& text) {
@@ -94,6 +105,7 @@ std::string complaint_about(const Scene& scene) {
     const std::string complaint = complaint_about_motion(scene, *scene.motion);
     if (!complaint.empty()) return complaint;
   }
+  if (const std::string complaint = complaint_about_instances(scene); !complaint.empty()) return complaint;
   const Camera camera = frame_scene(scene, 1.5f);
   if (!is_finite(camera.position) || !is_finite(camera.target) || !is_finite(camera.up)) return "camera";
   return "";
