@@ -156,6 +156,7 @@ TEST_F(CommandAnimate, RefusesWhatItCannotDo) {
                {"--fps 0", "--fps", 2},
                {"--fps nan", "--fps", 2},
                {"--video a.mp4", "--video needs", 2},
+               {"--skip-existing", "--skip-existing needs", 2},
                {"-o shared --video a.avi", "does not end in .mp4 or .webp", 2},
                {"--builder sah", "--builder", 2},
                {"-o file", "file", 1},

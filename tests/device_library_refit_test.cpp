@@ -64,6 +64,20 @@ class LibraryRefit : public LibraryTreeTest {
 
 TEST_F(LibraryRefit, NothingHasTheBoxThatTheHeadersSay) { EXPECT_EQ(COPPICE_NOTHING_BOX, NOTHING_BOX); }
 
+TEST_F(LibraryRefit, ATreeThatIsNotRefittedNeedsNoUpdateMemory) {
+  constexpr std::uint32_t count = 3000;
+  const Builder builder(context(), 5000, {.wide = true, .refits = true});
+  const Builder plain_builder(context(), count, {.wide = true});
+  const Tracer tracer(context());
+  const std::vector<Triangle> triangles = random_triangles(count, 1, 0.1f);
+  const auto memory = upload(triangles);
+  const std::vector<Ray> rays = rays_around(std::span(triangles).last(1), 300, 1);
+  const Built once = build(builder, plain(memory, count)), other = build(plain_builder, plain(memory, count));
+  const std::vector<Hit> found = hits(tracer, once.addresses, rays);
+  const std::vector<Hit> expected = hits(tracer, other.addresses, rays);
+  for (std::size_t i = 0; i < rays.size(); ++i) EXPECT_EQ(found[i].triangle, expected[i].triangle) << i;
+}
+
 // Triangles that go, come, and were not there when the tree was built.
 TEST_F(LibraryRefit, FramesOfATree) {
   constexpr std::uint32_t count = 3000;

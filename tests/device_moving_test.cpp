@@ -115,6 +115,25 @@ TEST(MotionRanges, ThatOverlapOrLieOutsideAreRefused) {
   EXPECT_THROW(plan(motion), std::invalid_argument) << "no joint 1";
 }
 
+// A deformation over parts that go other ways before, one of them without vertices.
+TEST_F(MovingVerticesTest, ADeformationHasOtherRangesWithinIt) {
+  Scene scene = all_that_moves(20);
+  auto motion = std::make_shared<Motion>(*scene.motion);
+  const auto all = static_cast<std::uint32_t>(motion->rest.size());
+  motion->sequences.clear();
+  motion->morphs.erase(motion->morphs.begin() + 2, motion->morphs.end());
+  motion->deformations = {{.vertices = {0, 0}, .size = 3},
+                          {.vertices = {0, all - 60}, .kind = DeformKind::sway, .size = 3, .amount = 0.3f}};
+  scene.motion = motion;
+  const std::vector<vec3> device = on_device(test_device(), scene, 0.9);
+  const std::vector<glm::vec3> host = positions_at(*motion, 0.9);
+  for (std::size_t v = 0; v < host.size(); ++v)
+    ASSERT_LT(glm::length(device[v] - host[v]), 2 * vertex_tolerance) << v;
+  motion->deformations[1].kind = DeformKind::explode;
+  Layout layout;
+  EXPECT_THROW(plan_vertices(layout, *motion, 0), std::invalid_argument) << "its pieces are counted";
+}
+
 // --- Frames.
 
 MovingOptions options_for(Walk walk, DeviceBuilder builder = DeviceBuilder::hploc) {

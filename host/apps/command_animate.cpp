@@ -46,7 +46,12 @@ class Pictures {
     if (!folder_.empty()) write_png(path_of(number), trace.width, trace.height, image);
   }
   // As ffmpeg reads it.
-  static std::string pattern_in(const fs::path& folder) { return (folder / "frame_%05d.png").string(); }
+  static std::string pattern_in(const fs::path& folder) {
+    std::string pattern = folder.string();
+    for (std::size_t at = 0; (at = pattern.find('%', at)) != std::string::npos; at += 2)
+      pattern.insert(at, "%");
+    return (fs::path(pattern) / "frame_%05d.png").string();
+  }
 
  private:
   fs::path path_of(std::uint32_t number) const { return folder_ / format("frame_%05u.png", number); }
@@ -92,6 +97,8 @@ class AnimateCommand : public Command {
     parse_view(picture_);
     parse_frames();
     if (std::isnan(frames_per_second_)) throw CLI::ValidationError("--fps: 'nan' is no number of frames");
+    if (skip_existing_ && folder_.empty())
+      throw CLI::ValidationError("--skip-existing needs the pictures of -o DIR");
     if (video_.empty()) return;
     if (folder_.empty()) throw CLI::ValidationError("--video needs the pictures of -o DIR");
     const std::string ending = fs::path(video_).extension();
@@ -178,7 +185,8 @@ class AnimateCommand : public Command {
     return {.build = builder_.least_build_options(),
             .traces = {picture_.trace},
             .triangle_count = static_cast<std::uint32_t>(scene.indices.size()),
-            .inputs = true};
+            .inputs = true,
+            .refits = update_ != Update::rebuild};
   }
 
   // Of the pictures from the first frame of this run on, as far as they follow each other.

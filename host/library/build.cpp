@@ -129,7 +129,11 @@ void Builder::Plan::cmd_build(VkCommandBuffer commands, const Primitives& plan, 
   Chain chain(memory.addresses(), &sink);
   const BuildPlan build = with_count(plan.build, count.maximum);
   append_build(chain, build, input);
-  if (plan.wide) append_wide(chain, build, with_count(*plan.wide, count.maximum));
+  if (plan.wide) {
+    const bool keeps = update || !plan.refit;
+    append_wide(chain, build,
+                with_count(keeps ? *plan.wide : without_update(*plan.wide, plan.build), count.maximum));
+  }
   if (update) append_refit_order(chain, build, with_count(*plan.refit, count.maximum));
 }
 

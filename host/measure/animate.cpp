@@ -15,11 +15,12 @@ namespace {
 
 using AnimateClock = std::chrono::steady_clock;
 
-// The film of any time, which is made once where the camera stands still.
+// The film of any time, by the camera that moves where the scene still has one (stand_up); it is made once
+// where the camera stands still.
 class Films {
  public:
   Films(const Scene& scene, const AnimateRuns& runs)
-      : motion_(runs.camera.empty() ? scene.motion.get() : nullptr),
+      : motion_(runs.camera.empty() && scene.camera ? scene.motion.get() : nullptr),
         trace_(runs.trace),
         still_(make_film(scene, runs.camera, trace_.width, trace_.height, trace_.samples)) {}
 
@@ -131,9 +132,12 @@ AnimateReport animate(CheckedDevice& device, const Scene& scene, const AnimateRu
   report.device_bytes = device_bytes(frames.layout());
   const Films films(scene, runs);
   const InterruptionGuard guard;
-  const double first = runs.first / runs.frames_per_second;  // compiles the kernels
-  frames.submit(first, films.at(first));
-  frames.take();
+  const double first = runs.first / runs.frames_per_second;
+  for (int warm_up = 0; warm_up < (runs.update == Update::rebuild ? 1 : 2); ++warm_up) {
+    frames.submit(first, films.at(first));  // compiles the kernels: of a build, then of a refit
+    frames.take();
+  }
+  frames.forget_times();
   FrameLoop(films, runs, frames, report).run();
   if (runs.split) split_kernels(device, frames, runs, report);
   return report;

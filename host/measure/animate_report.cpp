@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "analysis/tree_hash.h"
@@ -143,20 +144,34 @@ std::string text_of(const AnimateReport& report) {
   const double p50 = percentile(values_of(report, &AnimatedFrame::frame_ms), 50);
   text += format("  %.1f frames a second, %.1f MB on the device\n", p50 > 0 ? 1000 / p50 : 0,
                  static_cast<double>(report.device_bytes) / 1e6);
+  if (report.tree_cost) {
+    const std::vector<double> costs = values_of(report, &AnimatedFrame::sah);
+    text += format("  SAH cost %.2f at first, %.2f at last, median %.2f, at most %.2f\n", costs.front(),
+                   costs.back(), percentile(costs, 50), percentile(costs, 100));
+  }
   if (!report.kernels.rows.empty()) text += text_of(report.kernels);
   return text;
 }
 
 std::string to_csv(const AnimateReport& report) { return csv_of_frames(report) + "\n"; }
 
+// One a frame from the first to the last, NaN where there is none.
+std::vector<double> curve_of(const AnimateReport& report, FrameValue value) {
+  std::vector<double> values;
+  for (const AnimatedFrame& frame : report.frames) {
+    values.resize(frame.number - report.frames.front().number, std::numeric_limits<double>::quiet_NaN());
+    values.push_back(frame.*value);
+  }
+  return values;
+}
+
 std::string to_svg(const AnimateReport& report) {
   CurvePanel times{"ms", {}};
-  for (const TimedPart& part : timed_parts)
-    times.curves.push_back({part.name, values_of(report, part.value)});
+  for (const TimedPart& part : timed_parts) times.curves.push_back({part.name, curve_of(report, part.value)});
   const double first = report.frames.empty() ? 0 : report.frames.front().number;
   std::vector<CurvePanel> panels = {times};
   if (report.tree_cost)
-    panels.push_back({"SAH cost", {{"of the tree", values_of(report, &AnimatedFrame::sah)}}});
+    panels.push_back({"SAH cost", {{"of the tree", curve_of(report, &AnimatedFrame::sah)}}});
   return to_svg(report.scene + ", " + report.builder + " on " + report.device + ", --update " +
                     word_of_update(report.update),
                 "frame", first, panels);

@@ -27,15 +27,19 @@ Slot<T> instead_of(const Slot<Old>& old, std::uint64_t first_byte, std::uint64_t
   return {{old.place.block, old.place.offset + first_byte}, count};
 }
 
+void use_scratch_of(const BuildPlan& finished, WidePlan& plan, std::uint32_t bound) {
+  const std::uint64_t behind_entries = std::uint64_t{bound} * (sizeof(WideEntry) + sizeof(uint));
+  plan.children = instead_of<uint>(finished.clusters[0], 0, std::uint64_t{bound} * WIDE_CHILDREN);
+  plan.entries = instead_of<WideEntry>(finished.boxes, 0, bound);
+  plan.offsets = instead_of<uint>(finished.boxes, behind_entries, bound);
+}
+
 // What refits go by is kept apart if it is to be kept.
 void add_scratch(Layout& layout, WidePlan& plan, std::uint32_t bound, const BuildPlan* finished, bool keep) {
   const std::uint64_t children = std::uint64_t{bound} * WIDE_CHILDREN;
-  const std::uint64_t entries_bytes = std::uint64_t{bound} * sizeof(WideEntry),
-                      column = std::uint64_t{bound} * 4;
+  const std::uint64_t entries_bytes = std::uint64_t{bound} * sizeof(WideEntry);
   if (finished && !keep) {
-    plan.children = instead_of<uint>(finished->clusters[0], 0, children);
-    plan.entries = instead_of<WideEntry>(finished->boxes, 0, bound);
-    plan.offsets = instead_of<uint>(finished->boxes, entries_bytes + column, bound);
+    use_scratch_of(*finished, plan, bound);
   } else {
     const Memory kept = keep ? Memory::update : Memory::scratch;
     plan.children = layout.add<uint>("wide_children", children, kept);
@@ -71,6 +75,12 @@ WidePlan plan_wide(Layout& layout, TreeSlots& tree, const BuildPlan* finished, s
   tree.wide_nodes = layout.add<WideNode>("wide_nodes", bound, Memory::tree);
   tree.wide_counts = layout.add<WideCounts>("wide_counts", 1, Memory::tree);
   return plan;
+}
+
+WidePlan without_update(const WidePlan& plan, const BuildPlan& finished) {
+  WidePlan once = plan;
+  use_scratch_of(finished, once, static_cast<std::uint32_t>(plan.entries.count));
+  return once;
 }
 
 WidePlan with_count(const WidePlan& plan, std::uint32_t leaves) {

@@ -29,6 +29,10 @@ std::uint32_t wide_nodes_bound(std::uint32_t leaves);
 WidePlan plan_wide(Layout& layout, TreeSlots& tree, const BuildPlan* finished = nullptr,
                    std::uint32_t max_turns = 0xffffffffu, bool keep = false);
 
+// Of a plan that keeps what refits go by, beside this build, the same without: for a tree that is not
+// refitted.
+WidePlan without_update(const WidePlan& plan, const BuildPlan& finished);
+
 // The plan for a tree of fewer leaves, in the same slots. Allocates nothing.
 WidePlan with_count(const WidePlan& plan, std::uint32_t leaves);
 

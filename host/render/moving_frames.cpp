@@ -56,7 +56,8 @@ MovingFrames::MovingFrames(Device& device, const Scene& scene, const MovingOptio
       layout_(device.properties().max_block_bytes),
       plan_(plan_all(*this, scene_arrays(scene))),
       executor_(device, layout_),
-      chooser_(options.update) {
+      measures_(device.properties().timestamp_period_ns > 0),
+      chooser_(chooser()) {
   if (options_.under_way == 0) throw std::invalid_argument("no frame may be under way");
   upload_scene(scene);
   build_meshes();
@@ -95,28 +96,12 @@ void MovingFrames::build_meshes() {
 
 // The device has to be done with what it is given.
 MovingFrames::~MovingFrames() {
-  try {
-    while (!waiting_.empty()) take();
-  } catch (const DeviceError&) {
-    // Whoever asked for the frames has been told, or does not want to know.
-  }
-}
-
-void MovingFrames::append_places(Chain& chain, const Told& told) const {
-  if (!plan_.levels) append_vertices(chain, vertices_, told.motion, motion_);
-  if (swarm_) append_moves(chain, plan_.levels->plan, {rest_, told.turn}, swarm_->seed);
-}
-
-void MovingFrames::append_tree(Chain& chain, bool rebuilds) const {
-  const TreeSlots& tree = plan_.tree;
-  if (plan_.levels) {
-    append_top(chain, plan_.levels->plan);
-  } else if (rebuilds) {
-    append_build(chain, *plan_.build, {triangles_of(chain, vertices_), {}});
-    if (may_refit()) append_refit_order(chain, tree, refit_);
-  } else {
-    append_triangles(chain, tree.triangles, triangles_of(chain, vertices_));
-    append_refit(chain, tree, refit_);
+  for (const Waiting& waiting : waiting_) {
+    try {
+      (waiting.rebuilds ? builds_ : refits_)[waiting.slot].wait(piece_limit_seconds);
+    } catch (const DeviceError&) {
+      // Whoever asked for the frames has been told, or does not want to know.
+    }
   }
 }
 
@@ -156,6 +141,11 @@ void MovingFrames::tell(const Told& told, double seconds, const Film& film) {
   if (!swarm_) return;
   const uint turn = turn_at(*swarm_, seconds);
   executor_.upload(told.turn, std::span<const uint>(&turn, 1));
+}
+
+UpdateChooser MovingFrames::chooser() const {
+  const bool blind = options_.update == Update::automatic && !measures_;
+  return UpdateChooser(blind ? Update::rebuild : options_.update);
 }
 
 void MovingFrames::submit(double seconds, const Film& film) {

@@ -64,6 +64,9 @@ class MovingFrames {
   // Waits for the oldest frame. Throws DeviceError if it did not come out.
   MovingFrame take();
 
+  // As if no frame had been: what those before took is forgotten, and the next one is built.
+  void forget_times() { chooser_ = chooser(); }
+
   // The steps of one frame, and what they read, for other executors and for timing each kernel.
   const FramePlan& plan() const { return plan_; }
   const Layout& layout() const { return layout_; }
@@ -101,6 +104,7 @@ class MovingFrames {
   void upload_scene(const Scene& scene);
   void build_meshes();
   void tell(const Told& told, double seconds, const Film& film);
+  UpdateChooser chooser() const;
   bool may_refit() const { return options_.update != Update::rebuild; }
   bool has_state() const { return may_refit() || options_.tree_cost; }
   MovingFrame outcome(const Recorder::Times& times, const Left& left);
@@ -118,6 +122,7 @@ class MovingFrames {
   FramePlan plan_;
   GpuExecutor executor_;
   std::vector<Recorder> builds_, refits_;  // one of each a slot; no refits where none may be
+  bool measures_;                          // the device has timestamps
   UpdateChooser chooser_;
   std::deque<Waiting> waiting_;  // the oldest first
   std::size_t next_slot_ = 0;

@@ -34,6 +34,24 @@ class WayOfRanges {
     return ways_.try_emplace(range.first, Way{range.count, plan_.rest}).first->second.from;
   }
 
+  // Parts of a range that go the same way so far: one for each range within it, and one for each gap.
+  std::vector<VertexRange> parts_of(const VertexRange& range) const {
+    std::vector<VertexRange> parts;
+    std::uint32_t done = range.first;
+    const auto add = [&](std::uint32_t end) {
+      if (end > done) parts.push_back({done, end - done});
+      done = std::max(done, end);
+    };
+    const std::uint32_t end = range.first + range.count;
+    for (const auto& [first, way] : ways_) {
+      if (first < range.first || first >= end || first + way.count > end) continue;
+      add(first);
+      add(first + way.count);
+    }
+    add(end);
+    return parts;
+  }
+
   // All vertices, in order, those that no stage touches too; neighbours of one slot are one.
   std::vector<MovingVertices::Run> runs() const {
     std::vector<MovingVertices::Run> runs;
@@ -73,6 +91,9 @@ class WayOfRanges {
 
 void check(const Motion& motion) {
   const Pose pose = pose_at(motion, 0);
+  if (3 * std::uint64_t{motion.rest.size()} > std::uint64_t{65535} * VERTEX_TILE)
+    refuse(std::to_string(motion.rest.size()) + " vertices, more than " +
+           std::to_string(65535u * VERTEX_TILE / 3));
   for (const VertexSequence& sequence : motion.sequences) {
     if (sequence.vertices.count > 0 && sequence.frame_count() == 0) refuse("a sequence without frames");
   }
@@ -96,6 +117,21 @@ Address<float> coordinates_at(const Chain& chain, const Slot<float>& slot, const
   return chain.at(slot, std::uint64_t{3} * range.first);
 }
 
+// Pieces move as one and are counted from the first vertex, so their range stays whole.
+void plan_deformation(MovingVertices& plan, WayOfRanges& ways, std::size_t index, const Deformation& how) {
+  if (how.vertices.count == 0) return;
+  const bool whole = how.kind == DeformKind::explode || how.kind == DeformKind::swarm;
+  for (const VertexRange& part :
+       whole ? std::vector<VertexRange>{how.vertices} : ways.parts_of(how.vertices)) {
+    Slot<float>& from = ways.at(part);
+    const bool in_first =
+        from.place.block == plan.bent[0].place.block && from.place.offset == plan.bent[0].place.offset;
+    const Slot<float> to = plan.bent[in_first ? 1 : 0];
+    plan.deformations.push_back({index, part, from, to});
+    from = to;
+  }
+}
+
 }  // namespace
 
 MovingVertices plan_vertices(Layout& layout, const Motion& motion, std::uint32_t triangle_count) {
@@ -115,22 +151,20 @@ MovingVertices plan_vertices(Layout& layout, const Motion& motion, std::uint32_t
   for (std::size_t i = 0; i < motion.sequences.size(); ++i) {
     const VertexSequence& sequence = motion.sequences[i];
     plan.sequence_positions.push_back(layout.add<float>("sequence", 3 * sequence.positions.size()));
+    if (sequence.vertices.count == 0) continue;
     ways.at(sequence.vertices) = plan.bent[0];
-    plan.sequences.push_back({i, {}, plan.bent[0]});
+    plan.sequences.push_back({i, sequence.vertices, {}, plan.bent[0]});
   }
   for (std::size_t i = 0; i < motion.morphs.size(); ++i) {
+    const VertexRange& range = motion.morphs[i].vertices;
     plan.morph_offsets.push_back(layout.add<float>("morph_offsets", 3 * motion.morphs[i].offsets.size()));
-    Slot<float>& from = ways.at(motion.morphs[i].vertices);
-    plan.morphs.push_back({i, from, plan.bent[0]});
+    if (range.count == 0) continue;
+    Slot<float>& from = ways.at(range);
+    plan.morphs.push_back({i, range, from, plan.bent[0]});
     from = plan.bent[0];
   }
-  for (std::size_t i = 0; i < motion.deformations.size(); ++i) {
-    Slot<float>& from = ways.at(motion.deformations[i].vertices);
-    const bool in_first =
-        from.place.block == plan.bent[0].place.block && from.place.offset == plan.bent[0].place.offset;
-    plan.deformations.push_back({i, from, plan.bent[in_first ? 1 : 0]});
-    from = plan.bent[in_first ? 1 : 0];
-  }
+  for (std::size_t i = 0; i < motion.deformations.size(); ++i)
+    plan_deformation(plan, ways, i, motion.deformations[i]);
   plan.runs = ways.runs();
   return plan;
 }
@@ -145,7 +179,7 @@ MotionSlots plan_motion(Layout& layout, const Motion& motion) {
 
 void append_vertices(Chain& chain, const MovingVertices& plan, const MotionSlots& at, const Motion& motion) {
   for (const MovingVertices::Stage& stage : plan.sequences) {
-    const VertexRange& range = motion.sequences[stage.of].vertices;
+    const VertexRange& range = stage.vertices;
     chain.run(stages::vertex_sequence,
               {chain.at(plan.sequence_positions[stage.of]), chain.at(at.sequences, stage.of),
                coordinates_at(chain, stage.target, range), 3 * range.count, 0},
@@ -161,7 +195,7 @@ void append_vertices(Chain& chain, const MovingVertices& plan, const MotionSlots
               groups_of(count, VERTEX_TILE));
   }
   for (const MovingVertices::Stage& stage : plan.deformations) {
-    const VertexRange& range = motion.deformations[stage.of].vertices;
+    const VertexRange& range = stage.vertices;
     chain.run(stages::vertex_deform,
               {chain.at(at.deformations, stage.of), coordinates_at(chain, stage.source, range),
                coordinates_at(chain, stage.target, range), range.count, 0},

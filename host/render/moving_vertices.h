@@ -25,6 +25,7 @@ struct MovingVertices {
   };
   struct Stage {
     std::size_t of;              // its index among the sequences, morph targets or deformations
+    VertexRange vertices;        // its own, or a part of them
     Slot<float> source, target;  // of all vertices
   };
 
@@ -40,7 +41,8 @@ struct MovingVertices {
 
 // Slots of the vertices, with room for so many triangles' indices. Throws
 // LayoutError if one does not fit a block, and std::invalid_argument for ranges that overlap and are not the
-// same, or lie outside of the vertices, and for joints and weights that no pose has.
+// same (but a deformation without pieces may have several others within it), or lie outside of the vertices,
+// for joints and weights that no pose has, and for more vertices than a dispatch takes.
 MovingVertices plan_vertices(Layout& layout, const Motion& motion, std::uint32_t triangle_count);
 MotionSlots plan_motion(Layout& layout, const Motion& motion);
 

@@ -36,16 +36,32 @@ glm::vec3 clamp_to_float(glm::dvec3 p) {
   return glm::vec3{glm::clamp(p, -limit, limit)};
 }
 
-// The scene as it stands at later times of a cycle; none where nothing moves.
-std::vector<Scene> later_moments(const Scene& scene) {
-  constexpr int count = 8;
-  std::vector<Scene> moments;
-  for (int k = 1; scene.motion && k < count; ++k) {
-    moments.push_back(scene);
-    moments.back().positions = positions_at(*scene.motion, scene.motion->duration_seconds * k / count);
+// A scene as it stands at several times of a cycle, one after the other; once where nothing moves.
+class Moments {
+ public:
+  explicit Moments(const Scene& scene) : scene_(scene) {
+    if (!scene.motion) return;
+    moment_ = scene;
+    for (int k = 1; k < count; ++k)
+      later_.push_back(positions_at(*scene.motion, scene.motion->duration_seconds * k / count));
   }
-  return moments;
-}
+
+  template <class See>
+  void each(See see) {
+    see(scene_);
+    for (std::vector<glm::vec3>& positions : later_) {
+      std::swap(moment_.positions, positions);
+      see(moment_);
+      std::swap(moment_.positions, positions);
+    }
+  }
+
+ private:
+  static constexpr int count = 8;
+  const Scene& scene_;
+  Scene moment_;
+  std::vector<std::vector<glm::vec3>> later_;
+};
 
 }  // namespace
 
@@ -56,20 +72,20 @@ Camera frame_scene(const Scene& scene, float aspect) {
   Camera camera;
   const glm::dvec3 toward_camera = glm::normalize(glm::dvec3{0.55, 0.42, 0.83});
   const double tan_y = std::tan(glm::radians(static_cast<double>(camera.vertical_fov_degrees)) / 2);
-  const std::vector<Scene> later = later_moments(scene);
-  Bounds bounds = visible_bounds(scene);
-  for (const Scene& moment : later) {
+  Moments moments(scene);
+  Bounds bounds;
+  moments.each([&](const Scene& moment) {
     const Bounds its = visible_bounds(moment);
     bounds.low = glm::min(bounds.low, its.low);
     bounds.high = glm::max(bounds.high, its.high);
-  }
+  });
   const glm::dvec3 centre = bounds.centre();
   const auto distance_of = [&](auto counts) {
-    const auto at = [&](const Scene& moment) {
-      return viewing_distance(moment, counts, centre, toward_camera, tan_y * aspect, tan_y);
-    };
-    double distance = at(scene);
-    for (const Scene& moment : later) distance = std::max(distance, at(moment));
+    double distance = 0;
+    moments.each([&](const Scene& moment) {
+      distance =
+          std::max(distance, viewing_distance(moment, counts, centre, toward_camera, tan_y * aspect, tan_y));
+    });
     return 1.05 * distance;
   };
   double distance = distance_of(is_visible);

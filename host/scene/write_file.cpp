@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <random>
 #include <string>
 #include <system_error>
 
@@ -25,6 +26,12 @@ std::filesystem::path follow(const std::filesystem::path& path) {
     end = end.parent_path() / std::filesystem::read_symlink(end, error);
   }
   return end;
+}
+
+// Other machines that share the folder may have a process of the same number.
+const std::string& process_word() {
+  static const std::string word = std::to_string(getpid()) + "-" + std::to_string(std::random_device{}());
+  return word;
 }
 
 // Where the bytes go. A device or a pipe is written in place: renaming a file over it would replace it.
@@ -51,7 +58,7 @@ Target find_target(const std::filesystem::path& path) {
       if (!std::filesystem::is_directory(folder, error)) fail_to_write(path, "no such directory");
     }
   }
-  target.partial += "." + std::to_string(getpid()) + ".partial";
+  target.partial += "." + process_word() + ".partial";
   return target;
 }
 

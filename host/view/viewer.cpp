@@ -123,7 +123,7 @@ void Viewer::turn() {
   const double passed = seconds_between(last_turn_, now);
   last_turn_ = now;
   take_scene();
-  if (opened_ &&
+  if ((opened_ || presented_ > 0) &&
       (!same_scene(asked_, shown_) ||
        (!same_tree(asked_, shown_) && !(asked_.builder.on_device() && shown_.builder.on_device()))))
     start_scene();
@@ -219,7 +219,8 @@ void Viewer::make_frames(std::uint32_t width, std::uint32_t height) {
   device_->set_walk(asked_.walk);
   DeviceUse use{.builds = options.builder.on_device() != nullptr,
                 .traces = {device_->picture_options(options.trace, opened_->arrays.triangle_count())},
-                .inputs = true};
+                .inputs = true,
+                .refits = asked_.update != Update::rebuild};
   use.build = device_->build_options(options.builder.least_build_options());
   kept_check_device(device_->device(), use);
   frames_ = std::make_unique<ViewFrames>(*device_, *opened_, options);

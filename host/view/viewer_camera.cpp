@@ -71,7 +71,7 @@ void Viewer::move_time(double seconds) {
 
 bool Viewer::camera_moves() const {
   const Motion* const motion = opened_->scene.motion.get();
-  return motion && pose_at(*motion, seconds_).camera.has_value();
+  return motion && opened_->scene.camera && pose_at(*motion, seconds_).camera.has_value();
 }
 
 // Where nobody has moved it.
