@@ -237,7 +237,7 @@ TEST_F(Command, LockstepFindsNoDifference) {
   const auto report = nlohmann::json::parse(outcome.out);
   EXPECT_TRUE(report["equal"]);
   EXPECT_TRUE(report["first_difference"].is_null());
-  EXPECT_GT(report["stages"], 10);
+  EXPECT_GE(report["stages"], 10);
 }
 
 TEST_F(Command, InactiveAndMissingTrianglesStillGiveAPicture) {

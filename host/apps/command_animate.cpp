@@ -185,8 +185,8 @@ class AnimateCommand : public Command {
     return {.build = builder_.least_build_options(),
             .traces = {picture_.trace},
             .triangle_count = static_cast<std::uint32_t>(scene.indices.size()),
-            .inputs = true,
-            .refits = update_ != Update::rebuild};
+            .refits = update_ != Update::rebuild,
+            .inputs = true};
   }
 
   // Of the pictures from the first frame of this run on, as far as they follow each other.

@@ -105,6 +105,24 @@ MovingFrames::~MovingFrames() {
   }
 }
 
+void MovingFrames::append_places(Chain& chain, const Told& told) const {
+  if (!plan_.levels) append_vertices(chain, vertices_, told.motion, motion_);
+  if (swarm_) append_moves(chain, plan_.levels->plan, {rest_, told.turn}, swarm_->seed);
+}
+
+void MovingFrames::append_tree(Chain& chain, bool rebuilds) const {
+  const TreeSlots& tree = plan_.tree;
+  if (plan_.levels) {
+    append_top(chain, plan_.levels->plan);
+  } else if (rebuilds) {
+    append_build(chain, *plan_.build, {triangles_of(chain, vertices_), {}});
+    if (may_refit()) append_refit_order(chain, tree, refit_);
+  } else {
+    append_triangles(chain, tree.triangles, triangles_of(chain, vertices_));
+    append_refit(chain, tree, refit_);
+  }
+}
+
 void MovingFrames::append_update(Chain& chain, bool rebuilds) const {
   append_tree(chain, rebuilds);
   chain.mark();

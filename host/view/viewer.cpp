@@ -219,8 +219,8 @@ void Viewer::make_frames(std::uint32_t width, std::uint32_t height) {
   device_->set_walk(asked_.walk);
   DeviceUse use{.builds = options.builder.on_device() != nullptr,
                 .traces = {device_->picture_options(options.trace, opened_->arrays.triangle_count())},
-                .inputs = true,
-                .refits = asked_.update != Update::rebuild};
+                .refits = asked_.update != Update::rebuild,
+                .inputs = true};
   use.build = device_->build_options(options.builder.least_build_options());
   kept_check_device(device_->device(), use);
   frames_ = std::make_unique<ViewFrames>(*device_, *opened_, options);
