@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 #include <stdexcept>
+#include <string>
 
 #include "stages/stages.h"
 
@@ -38,6 +39,8 @@ InstancePlan plan_instances(Layout& layout, std::span<const std::uint32_t> mesh_
     nodes += nodes_of(count);
     most = std::max(most, count);
   }
+  if (instance_count > 65535u * std::min(MOVE_INSTANCES_GROUP, INSTANCE_BOXES_GROUP))
+    throw std::invalid_argument(std::to_string(instance_count) + " instances, more than a dispatch takes");
   plan.meshes = layout.add<MeshRange>("meshes", plan.ranges.size(), Memory::source);
   plan.mesh_triangles = layout.add<Triangle>("mesh_triangles", triangles, Memory::tree);
   plan.mesh_nodes = layout.add<Node>("mesh_nodes", nodes, Memory::tree);
