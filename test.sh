@@ -61,6 +61,10 @@ run_ctest() {
 # In a subshell, so that one driver's environment does not reach the next.
 run_ctest_on() (
   use_driver "$1"
+  # Both can present, and all that a window takes is installed (tests/device_view_test.cpp).
+  if [[ $1 == private || $1 == stock ]] && command -v Xvfb >/dev/null && command -v xdotool >/dev/null; then
+    export COPPICE_TEST_WINDOW=1
+  fi
   shift
   run_ctest "$build_dir" "$@"
 )

@@ -8,14 +8,26 @@
 namespace coppice {
 namespace {
 
+// test.sh says so where it has installed all that a window takes and knows the driver: a test that opens none
+// has failed there.
+bool has_to_open() { return std::getenv("COPPICE_TEST_WINDOW") != nullptr; }
+
+#define CANNOT_OPEN(reason)     \
+  do {                          \
+    if (has_to_open())          \
+      FAIL() << (reason);       \
+    else                        \
+      GTEST_SKIP() << (reason); \
+  } while (false)
+
 class ViewWindow : public Command {
  protected:
   void SetUp() override {
     Command::SetUp();
     if (!fs::exists(fs::path(COPPICE_PROGRAM).parent_path() / "coppice-view"))
-      GTEST_SKIP() << "built without a window";
+      CANNOT_OPEN("built without a window");
     desktop_.emplace();
-    if (!desktop_->missing().empty()) GTEST_SKIP() << desktop_->missing();
+    if (!desktop_->missing().empty()) CANNOT_OPEN(desktop_->missing());
   }
 
   void TearDown() override {
@@ -92,7 +104,7 @@ class ViewWindow : public Command {
 };
 
 #define OPEN_OR_SKIP(arguments) \
-  if (!open(arguments)) GTEST_SKIP() << "the driver cannot present: " << window_->err()
+  if (!open(arguments)) CANNOT_OPEN("the driver cannot present: " + window_->err())
 
 TEST_F(ViewWindow, ShowsWhatRenderMakesFromWhereverOneLooks) {
   OPEN_OR_SKIP(
@@ -156,17 +168,17 @@ TEST_F(ViewWindow, AnotherSceneIsTypedAndABadOneIsNamed) {
   EXPECT_EQ(std::ranges::count(without_notes(window_->err()), '\n'), 1) << window_->err();
 }
 
-// The host's builder and the reader of the scene go on in a thread of their own.
+// The host's builder and the reader of the scene go on in a thread of their own, which is most often not done
+// when the key comes.
 TEST_F(ViewWindow, IsClosedWhileASceneIsOpenedAndBuilt) {
   ASSERT_TRUE(open("scatter:400000 --builder gd16 --size 200x150", false));
   std::string id;
   wait_until([&] { return !(id = id_of_window()).empty() || window_->has_ended(); });
   if (window_->has_ended() && window_->err().find("cannot present") != std::string::npos)
-    GTEST_SKIP() << "the driver cannot present";
+    CANNOT_OPEN("the driver cannot present");
   desktop_->xdotool("windowfocus " + id);
   key("Escape");
   EXPECT_EQ(window_->wait(), 0) << window_->err();
-  EXPECT_FALSE(shows("size ")) << "the scene was there too early for this test";
 }
 
 TEST_F(ViewWindow, FramesOfAMovingSceneAreThoseOfAnimateHoweverItsTreesAreMade) {
@@ -180,8 +192,7 @@ TEST_F(ViewWindow, FramesOfAMovingSceneAreThoseOfAnimateHoweverItsTreesAreMade) 
                                  "--frames", "4", "--json", "view.json", "--update", update},
         "window", desktop_->settings());
     ASSERT_TRUE(window_->wait());
-    if (window_->err().find("cannot present") != std::string::npos)
-      GTEST_SKIP() << "the driver cannot present";
+    if (window_->err().find("cannot present") != std::string::npos) CANNOT_OPEN("the driver cannot present");
     ASSERT_EQ(window_->wait(), 0) << window_->err();
     const auto view = nlohmann::json::parse(read("view.json"));
     EXPECT_EQ(view["frames"], 4);

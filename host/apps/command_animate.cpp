@@ -78,11 +78,7 @@ class AnimateCommand : public Command {
         ->check(CLI::Range(0.001, 100000.0));
     app.add_option("--video", video_, "then make FILE.mp4 or FILE.webp of the pictures, by ffmpeg")
         ->type_name("FILE");
-    app.add_option("--update", update_, "build each tree anew, refit the first one, or what costs less")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, Update>{
-            {"rebuild", Update::rebuild}, {"refit", Update::refit}, {"auto", Update::automatic}}))
-        ->type_name("rebuild|refit|auto")
-        ->default_str("rebuild");
+    add_update(app, update_);
     app.add_flag("--tree-cost", tree_cost_, "the SAH cost of every frame's tree; --plot and --csv imply it");
     app.add_option("--plot", files.plot, "curves over the frames, as SVG")->type_name("FILE");
     app.add_option("--csv", files.csv, "every frame, comma-separated")->type_name("FILE");

@@ -1,7 +1,6 @@
 #include <unistd.h>
 
 #include <cstdio>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "apps/command.h"
@@ -28,13 +27,7 @@ class ViewCommand : public Command {
         ->check(CLI::Range(1u, 1'000'000u));
     app.add_flag("--paused", run_.paused, "a moving scene stands still at first");
     app.add_flag("--rebuild", run_.rebuild, "build the tree anew for every frame");
-    app.add_option("--update", run_.update,
-                   "where triangles have moved: a new tree, the old one refitted, or what "
-                   "costs less")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, Update>{
-            {"rebuild", Update::rebuild}, {"refit", Update::refit}, {"auto", Update::automatic}}))
-        ->type_name("rebuild|refit|auto")
-        ->default_str("rebuild");
+    add_update(app, run_.update);
     app.add_flag("--no-panes", no_panes_, "without panes at first");
     app.add_option("--pictures", run_.pictures, "what the names of written pictures begin with")
         ->type_name("PREFIX")

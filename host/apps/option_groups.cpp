@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <map>
 
 #include "builders/registry.h"
 #include "interface/ploc.h"
@@ -92,6 +93,15 @@ std::string word_of_lookback(LookbackChoice lookback) { return word_of(lookback_
 std::string word_of_triangle_test(std::uint32_t test) { return word_of(triangle_test_words, test); }
 std::string word_of_box_test(std::uint32_t test) { return word_of(box_test_words, test); }
 std::string word_of_morton_bits(std::uint32_t bits) { return word_of(morton_words, bits); }
+
+void add_update(CLI::App& app, Update& update) {
+  app.add_option("--update", update,
+                 "where triangles have moved: a new tree, the old one refitted, or what costs less")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Update>{
+          {"rebuild", Update::rebuild}, {"refit", Update::refit}, {"auto", Update::automatic}}))
+      ->type_name("rebuild|refit|auto")
+      ->default_str("rebuild");
+}
 
 void add_named_device(CLI::App& app, DeviceOptions& device) {
   app.add_option("--device", device.select, "part of a device's name, or its index")->type_name("NAME|INDEX");

@@ -9,6 +9,7 @@
 #include "pipeline/checked_device.h"
 #include "pipeline/trace_plan.h"
 #include "render/show.h"
+#include "render/update_chooser.h"
 #include "scene/scene_source.h"
 
 namespace coppice {
@@ -43,6 +44,7 @@ void add_size(CLI::App& app, PictureOptions& picture);
 void add_view(CLI::App& app, PictureOptions& picture, std::string& up);     // size and camera
 void add_picture(CLI::App& app, PictureOptions& picture, std::string& up);  // view and samples
 void add_show(CLI::App& app, ShowOptions& show);
+void add_update(CLI::App& app, Update& update);
 void add_named_device(CLI::App& app, DeviceOptions& device);
 void add_device(CLI::App& app, DeviceOptions& device);  // and whether to validate
 void add_trace_events(CLI::App& app, std::string& file);
