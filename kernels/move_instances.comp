@@ -3,9 +3,9 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/instances.h"
-#include "lib/on_circle.glsl"
 #include "lib/random.glsl"
 #include "lib/transform.glsl"
+#include "lib/turn.glsl"
 
 layout(local_size_x = MOVE_INSTANCES_GROUP) in;
 layout(push_constant, scalar) uniform Push { MoveInstancesArgs args; };
@@ -27,8 +27,8 @@ void main() {
   if (i >= args.instance_count) return;
   uint state = i ^ (args.seed * 0x9e3779b9u);
   uint laps = 1u + (next_random(state) >> 30);
-  uint turn = laps * args.turn.at[0];
-  vec2 orbit = on_circle(turn), tumble = on_circle(2u * turn);
+  uint part = laps * args.turn.at[0];
+  vec2 orbit = part_of_turn(part), tumble = part_of_turn(2u * part);
   InstanceTransform rest = args.rest.at[i];
   vec4 x = tumbled(tumble, rest.row_x, rest.move_x);
   vec4 y = tumbled(tumble, rest.row_y, rest.move_y);

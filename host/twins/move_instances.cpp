@@ -1,5 +1,4 @@
-#include <numbers>
-
+#include "twins/circle.h"
 #include "twins/finite.h"
 #include "twins/instance.h"
 
@@ -14,30 +13,6 @@ uint pcg(uint counter) {
   return (mixed >> 22) ^ mixed;
 }
 
-struct OnCircle {
-  float cosine, sine;
-};
-
-// Of a part of a turn of 2^32: Taylor's polynomials around the nearest quarter.
-OnCircle on_circle(uint turn) {
-  const uint quarter = (turn + (1u << 29)) >> 30;
-  const auto beside = static_cast<std::int32_t>(turn - (quarter << 30));
-  const float x = static_cast<float>(beside >> 5) * static_cast<float>(std::numbers::pi / 4 * 0x1p-24);
-  const float xx = x * x;
-  const float cosine = 1.0f + xx * (-0.5f + xx * (1.0f / 24 + xx * (-1.0f / 720)));
-  const float sine = x + x * xx * (-1.0f / 6 + xx * (1.0f / 120 + xx * (-1.0f / 5040)));
-  switch (quarter % 4) {
-    case 0:
-      return {cosine, sine};
-    case 1:
-      return {-sine, cosine};
-    case 2:
-      return {-cosine, -sine};
-    default:
-      return {sine, -cosine};
-  }
-}
-
 // a b + c d, each operation rounded.
 float sum_of_products(float a, float b, float c, float d) { return flushed(flushed(a * b) + flushed(c * d)); }
 
@@ -48,17 +23,17 @@ void move_instances(const MoveInstancesArgs& args) {
   for (uint i = 0; i < args.instance_count; ++i) {
     Affine moved(args.rest[i]);
     const uint laps = 1 + pcg(i ^ (args.seed * 0x9e3779b9u)) / (1u << 30);
-    const OnCircle tumble = on_circle(2 * laps * turn), orbit = on_circle(laps * turn);
+    const OnCircle tumble = circle_at_part(2 * laps * turn), orbit = circle_at_part(laps * turn);
     for (auto& row : moved.at) {
       const float y = row[1], z = row[2];
-      row[1] = sum_of_products(tumble.cosine, y, tumble.sine, z);
-      row[2] = sum_of_products(tumble.cosine, z, -tumble.sine, y);
+      row[1] = sum_of_products(tumble.cos, y, tumble.sin, z);
+      row[2] = sum_of_products(tumble.cos, z, -tumble.sin, y);
     }
     for (int column = 0; column < 4; ++column) {
       float &x = moved.at[0][column], &z = moved.at[2][column];
       const float old_x = x;
-      x = sum_of_products(orbit.cosine, old_x, -orbit.sine, z);
-      z = sum_of_products(orbit.sine, old_x, orbit.cosine, z);
+      x = sum_of_products(orbit.cos, old_x, -orbit.sin, z);
+      z = sum_of_products(orbit.sin, old_x, orbit.cos, z);
     }
     const auto& at = moved.at;
     args.transforms[i] = {{at[0][0], at[0][1], at[0][2]}, at[0][3], {at[1][0], at[1][1], at[1][2]}, at[1][3],

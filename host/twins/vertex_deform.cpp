@@ -2,43 +2,14 @@
 #include <cmath>
 
 #include "interface/vertex.h"
+#include "twins/circle.h"
 
 namespace coppice::twins {
 
 namespace {
 
-struct Circle {
-  float cos, sin;
-};
-
-// By Horner's rule, in the order that interface/vertex.h gives the coefficients in.
-template <std::size_t N>
-float polynomial(const float (&coefficients)[N], float y) {
-  float value = coefficients[N - 1];
-  for (std::size_t k = N - 1; k-- > 0;) value = coefficients[k] + y * value;
-  return value;
-}
-
-Circle circle_at(float turns) {
-  static const float for_cos[] = {TURN_COS_0, TURN_COS_1, TURN_COS_2, TURN_COS_3, TURN_COS_4};
-  static const float for_sin[] = {TURN_SIN_0, TURN_SIN_1, TURN_SIN_2, TURN_SIN_3, TURN_SIN_4};
-  const float quarters = 4 * (turns - std::floor(turns)), nearest = std::floor(quarters + 0.5f);
-  const float x = quarters - nearest;
-  const float c = polynomial(for_cos, x * x), s = x * polynomial(for_sin, x * x);
-  switch (static_cast<int>(nearest) % 4) {
-    case 0:
-      return {c, s};
-    case 1:
-      return {-s, c};
-    case 2:
-      return {-c, -s};
-    default:
-      return {s, -c};
-  }
-}
-
 vec3 turned_way(const vec3& p, float turns) {
-  const Circle at = circle_at(turns);
+  const OnCircle at = circle_at(turns);
   return {at.cos * p.x + at.sin * p.z - p.x, 0, at.cos * p.z - at.sin * p.x - p.z};
 }
 

@@ -91,12 +91,5 @@ struct VertexPoseArgs {
   uint padding;
 };
 
-// (cos, sin) of a part of a turn up to an eighth, x in quarter turns: polynomials in y = x * x, the first
-// coefficient of the lowest power; sin is x times its own. To 1.5e-7.
-const float TURN_COS_0 = 1.0, TURN_COS_1 = -1.23370055, TURN_COS_2 = 0.253669508, TURN_COS_3 = -0.0208634808,
-            TURN_COS_4 = 0.000919260274;
-const float TURN_SIN_0 = 1.57079633, TURN_SIN_1 = -0.645964098, TURN_SIN_2 = 0.0796926262,
-            TURN_SIN_3 = -0.00468175414, TURN_SIN_4 = 0.000160441185;
-
 INTERFACE_END
 #endif
