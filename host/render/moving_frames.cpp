@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "pipeline/bounded_submits.h"
+#include "render/moving_tree.h"
 #include "scene/instances.h"
 #include "stages/errors.h"
 #include "stages/stages.h"
@@ -111,23 +112,17 @@ void MovingFrames::append_places(Chain& chain, const Told& told) const {
 }
 
 void MovingFrames::append_tree(Chain& chain, bool rebuilds) const {
-  const TreeSlots& tree = plan_.tree;
   if (plan_.levels) {
     append_top(chain, plan_.levels->plan);
-  } else if (rebuilds) {
-    append_build(chain, *plan_.build, {triangles_of(chain, vertices_), {}});
-    if (may_refit()) append_refit_order(chain, tree, refit_);
   } else {
-    append_triangles(chain, tree.triangles, triangles_of(chain, vertices_));
-    append_refit(chain, tree, refit_);
+    append_moving_tree(chain, vertices_, plan_, may_refit() ? &refit_ : nullptr, rebuilds);
   }
 }
 
 void MovingFrames::append_update(Chain& chain, bool rebuilds) const {
   append_tree(chain, rebuilds);
   chain.mark();
-  if (plan_.wide && rebuilds) append_wide(chain, plan_.tree, *plan_.wide);
-  if (plan_.wide && !rebuilds) append_wide_boxes(chain, plan_.tree, *plan_.wide);
+  append_moving_wide(chain, plan_, rebuilds);
   if (options_.tree_cost) append_tree_cost(chain, plan_.tree, refit_);
   chain.mark();
 }

@@ -6,6 +6,7 @@
 #include "analysis/quality.h"
 #include "measure/show_frame.h"
 #include "pipeline/bounded_submits.h"
+#include "render/moving_tree.h"
 #include "render/scene_room.h"
 #include "stages/errors.h"
 
@@ -110,31 +111,26 @@ ViewFrames::ViewFrames(CheckedDevice& device, const OpenedScene& opened, const V
   record();
 }
 
-void ViewFrames::record() {
-  Chain tree = executor_.chain(), trace = executor_.chain();
+// A tree of the host is there, and gets its wide nodes.
+void ViewFrames::record_tree(bool rebuilds, std::vector<std::string>& groups,
+                             std::optional<Recorder>& recorder) {
+  Chain chain = executor_.chain();
   if (plan_.build) {
-    append_vertices(tree, vertices_, at_, motion_);
-    append_build(tree, *plan_.build, {triangles_of(tree, vertices_), {}});
+    append_vertices(chain, vertices_, at_, motion_);
+    append_moving_tree(chain, vertices_, plan_, refit_ ? &*refit_ : nullptr, rebuilds);
   }
-  if (refit_) append_refit_order(tree, plan_.tree, *refit_);
-  append_frame_wide(tree, plan_);
-  append_trace(trace, plan_.tree, plan_.trace);
-  tree_groups_ = mark_groups(tree.steps());
-  trace_groups_ = mark_groups(trace.steps());
-  if (!tree.steps().empty()) tree_recorder_.emplace(executor_.record(tree.steps()));
-  trace_recorder_.emplace(executor_.record(trace.steps()));
-  if (refit_) record_refit();
+  append_moving_wide(chain, plan_, rebuilds);
+  groups = mark_groups(chain.steps());
+  if (!chain.steps().empty()) recorder.emplace(executor_.record(chain.steps()));
 }
 
-// From the vertices of another time to boxes of the same tree.
-void ViewFrames::record_refit() {
-  Chain chain = executor_.chain();
-  append_vertices(chain, vertices_, at_, motion_);
-  append_triangles(chain, plan_.tree.triangles, triangles_of(chain, vertices_));
-  append_refit(chain, plan_.tree, *refit_);
-  if (plan_.wide) append_wide_boxes(chain, plan_.tree, *plan_.wide);
-  refit_groups_ = mark_groups(chain.steps());
-  refit_recorder_.emplace(executor_.record(chain.steps()));
+void ViewFrames::record() {
+  record_tree(true, tree_groups_, tree_recorder_);
+  if (refit_) record_tree(false, refit_groups_, refit_recorder_);
+  Chain trace = executor_.chain();
+  append_trace(trace, plan_.tree, plan_.trace);
+  trace_groups_ = mark_groups(trace.steps());
+  trace_recorder_.emplace(executor_.record(trace.steps()));
 }
 
 void ViewFrames::submit(Recorder& recorder, const std::vector<std::string>& names, ViewedFrame& frame) {

@@ -91,7 +91,7 @@ class ViewFrames {
   const std::vector<SlotListing>& slots() const { return layout_.slots(); }
 
  private:
-  void record_refit();
+  void record_tree(bool rebuilds, std::vector<std::string>& groups, std::optional<Recorder>& recorder);
   // False where it was refitted in vain, and then built.
   bool move_tree(double seconds, bool rebuild, ViewedFrame& frame);
   bool make_tree(bool rebuilds, ViewedFrame& frame);
