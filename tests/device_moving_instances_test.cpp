@@ -4,47 +4,13 @@
 #include <numeric>
 
 #include "analysis/tree_hash.h"
-#include "render/film.h"
-#include "render/moving_frames.h"
 #include "scene/instances.h"
 #include "stages/lockstep_executor.h"
 #include "stages/stages.h"
-#include "support/test_device.h"
+#include "support/moving_frames.h"
 
 namespace coppice {
 namespace {
-
-MovingOptions swarm_options(DeviceBuilder builder = DeviceBuilder::hploc) {
-  MovingOptions options;
-  options.trace = test_trace_options(64, 48);
-  options.build.builder = builder;
-  return options;
-}
-
-Film swarm_film(const Scene& scene, const MovingOptions& options) {
-  return make_film(scene, {}, options.trace.width, options.trace.height, options.trace.samples);
-}
-
-std::vector<uint> swarm_frame(MovingFrames& frames, double seconds, const Film& film) {
-  frames.submit(seconds, film);
-  const MovingFrame frame = frames.take();
-  return {frame.image.begin(), frame.image.end()};
-}
-
-// By one level, with a tree of another kind.
-std::vector<uint> picture_of_one_level(const Scene& flat, const Film& film, const TraceOptions& trace) {
-  const SceneArrays arrays = scene_arrays(flat);
-  Layout layout(test_device().properties().max_block_bytes);
-  const FramePlan plan = plan_frame(layout, arrays, {.build = BuildOptions{}, .trace = trace});
-  EXPECT_FALSE(plan.levels);
-  GpuExecutor executor(test_device(), layout);
-  upload_frame(executor, plan, arrays, film);
-  Chain chain = executor.chain();
-  append_frame(chain, plan);
-  executor.record(chain.steps()).submit_and_wait(submit_limit_seconds);
-  EXPECT_EQ(executor.read(plan.tree.state)[0].error_word, 0u);
-  return executor.read(plan.trace.image);
-}
 
 // The scene with its instances where the last frame had them.
 Scene as_moved(Scene scene, MovingFrames& frames) {
@@ -62,16 +28,16 @@ using MovingInstances = DeviceTest;
 TEST_F(MovingInstances, AreThePicturesOfTheFlattenedScene) {
   const Scene scene = make_instances(500);
   for (const DeviceBuilder builder : {DeviceBuilder::ploc, DeviceBuilder::hploc, DeviceBuilder::lbvh}) {
-    const MovingOptions options = swarm_options(builder);
-    const Film film = swarm_film(scene, options);
+    const MovingOptions options = moving_options(Walk::binary, builder);
+    const Film film = film_of(scene, options);
     MovingFrames frames(test_device(), scene, options);
     std::vector<std::uint64_t> hashes;
     for (const double seconds : {0.0, 0.4, 3.0, 31.9, 1000.25}) {
-      const std::vector<uint> image = swarm_frame(frames, seconds, film);
+      const std::vector<uint> image = frame_at(frames, seconds, film);
       const Scene moved = as_moved(scene, frames);
-      EXPECT_EQ(image, picture_of_one_level(flattened(moved), film, options.trace)) << seconds;
+      EXPECT_EQ(image, still_picture(flattened(moved), film, BuildOptions{}, options.trace)) << seconds;
       if (seconds == 0) {
-        EXPECT_EQ(image, picture_of_one_level(flattened(scene), film, options.trace));
+        EXPECT_EQ(image, still_picture(flattened(scene), film, BuildOptions{}, options.trace));
       }
       EXPECT_EQ(std::ranges::count(hashes, image_hash(image)), 0) << seconds;
       hashes.push_back(image_hash(image));
@@ -82,12 +48,12 @@ TEST_F(MovingInstances, AreThePicturesOfTheFlattenedScene) {
 TEST_F(MovingInstances, AreInLockstepWithTheTwins) {
   const Scene scene = make_instances(100);
   const SceneArrays arrays = scene_arrays(scene);
-  const MovingOptions options = swarm_options();
+  const MovingOptions options = moving_options();
   Layout layout(test_device().properties().max_block_bytes);
   const FramePlan plan = plan_frame(layout, arrays, {.build = options.build, .trace = options.trace});
   const SwarmSlots swarm{layout.add<InstanceTransform>("rest", 100), layout.add_mapped<uint>("turn", 1)};
   LockstepExecutor executor(test_device(), layout);
-  upload_frame(executor, plan, arrays, swarm_film(scene, options));
+  upload_frame(executor, plan, arrays, film_of(scene, options));
   executor.upload(swarm.rest, std::span<const InstanceTransform>(arrays.transforms));
   const auto expect_none = [&](const auto& append) {
     const auto difference = executor.run(append);
@@ -111,10 +77,10 @@ TEST_F(MovingInstances, AreTheSameBitsInAnyOrderAndWithAnyNumberUnderWay) {
   const Scene scene = make_instances(60);
   std::vector<std::uint64_t> hashes[2];
   for (const std::uint32_t under_way : {1u, 3u}) {
-    MovingOptions options = swarm_options();
+    MovingOptions options = moving_options();
     options.under_way = under_way;
     MovingFrames frames(test_device(), scene, options);
-    const Film film = swarm_film(scene, options);
+    const Film film = film_of(scene, options);
     std::vector<std::uint64_t>& mine = hashes[under_way == 3];
     mine.resize(8);
     std::vector<std::size_t> order(8);
@@ -141,7 +107,7 @@ TEST_F(MovingInstances, AreTheSameBitsInAnyOrderAndWithAnyNumberUnderWay) {
 // A frame has one build, that over the instances.
 TEST_F(MovingInstances, LeaveTheMeshesTreesAsTheyAre) {
   const Scene scene = make_instances(30);
-  MovingOptions options = swarm_options();
+  MovingOptions options = moving_options();
   options.tree_cost = true;
   MovingFrames frames(test_device(), scene, options);
   std::size_t builds = 0, moves = 0;
@@ -154,7 +120,7 @@ TEST_F(MovingInstances, LeaveTheMeshesTreesAsTheyAre) {
   const Slot<Node>& nodes = frames.plan().levels->plan.mesh_nodes;
   const std::vector<Node> before = frames.executor().read(nodes);
   EXPECT_GT(before[0].height, 0u);
-  frames.submit(2, swarm_film(scene, options));
+  frames.submit(2, film_of(scene, options));
   EXPECT_GT(frames.take().sah, 1);
   const std::vector<Node> after = frames.executor().read(nodes);
   EXPECT_EQ(tree_hash(before), tree_hash(after));
@@ -162,25 +128,25 @@ TEST_F(MovingInstances, LeaveTheMeshesTreesAsTheyAre) {
 
 TEST_F(MovingInstances, StandStillWithoutASwarm) {
   Scene scene = make_instances(40);
-  const MovingOptions options = swarm_options();
-  const Film film = swarm_film(scene, options);
+  const MovingOptions options = moving_options();
+  const Film film = film_of(scene, options);
   MovingFrames swarm(test_device(), scene, options);
   scene.swarm.reset();
   MovingFrames still(test_device(), scene, options);
-  const std::vector<uint> first = swarm_frame(swarm, 0, film);
-  EXPECT_EQ(swarm_frame(still, 0, film), first);
-  EXPECT_EQ(swarm_frame(still, 5, film), first);
-  EXPECT_NE(swarm_frame(swarm, 5, film), first);
+  const std::vector<uint> first = frame_at(swarm, 0, film);
+  EXPECT_EQ(frame_at(still, 0, film), first);
+  EXPECT_EQ(frame_at(still, 5, film), first);
+  EXPECT_NE(frame_at(swarm, 5, film), first);
 }
 
 TEST_F(MovingInstances, HaveNoRefitsAndNoWideTree) {
   const Scene scene = make_instances(3);
-  MovingOptions options = swarm_options();
+  MovingOptions options = moving_options();
   for (const Update update : {Update::refit, Update::automatic}) {
     options.update = update;
     EXPECT_THROW(MovingFrames(test_device(), scene, options), std::invalid_argument);
   }
-  options = swarm_options();
+  options = moving_options();
   options.trace.walk = Walk::wide_packets;
   EXPECT_THROW(MovingFrames(test_device(), scene, options), std::invalid_argument);
 }
@@ -189,10 +155,10 @@ TEST_F(MovingInstances, HaveNoRefitsAndNoWideTree) {
 TEST_F(MovingInstances, LikeAGpuGoThroughMappedMemory) {
   Device like_a_gpu({"", true, true});
   const Scene scene = make_instances(50);
-  const MovingOptions options = swarm_options();
+  const MovingOptions options = moving_options();
   MovingFrames frames(like_a_gpu, scene, options), here(test_device(), scene, options);
-  const Film film = swarm_film(scene, options);
-  EXPECT_EQ(swarm_frame(frames, 1.5, film), swarm_frame(here, 1.5, film));
+  const Film film = film_of(scene, options);
+  EXPECT_EQ(frame_at(frames, 1.5, film), frame_at(here, 1.5, film));
   EXPECT_EQ(like_a_gpu.take_validation_messages(), std::vector<std::string>());
 }
 

@@ -6,10 +6,9 @@
 
 #include "analysis/tree_hash.h"
 #include "builders/ploc.h"
-#include "render/film.h"
-#include "render/moving_frames.h"
 #include "scene/generators.h"
 #include "stages/lockstep_executor.h"
+#include "support/moving_frames.h"
 #include "support/moving_scenes.h"
 #include "support/scenes.h"
 #include "support/test_device.h"
@@ -136,38 +135,12 @@ TEST_F(MovingVerticesTest, ADeformationHasOtherRangesWithinIt) {
 
 // --- Frames.
 
-MovingOptions options_for(Walk walk, DeviceBuilder builder = DeviceBuilder::hploc) {
-  MovingOptions options;
-  options.trace = test_trace_options(64, 48);
-  options.trace.walk = walk;
-  options.build.builder = builder;
-  return options;
-}
-
-Film film_of(const Scene& scene, const MovingOptions& options) {
-  return make_film(scene, {}, options.trace.width, options.trace.height, options.trace.samples);
-}
-
-std::vector<uint> frame_at(MovingFrames& frames, double seconds, const Film& film) {
-  frames.submit(seconds, film);
-  const MovingFrame frame = frames.take();
-  return {frame.image.begin(), frame.image.end()};
-}
-
-// The picture of a scene that stands where the moving one is.
-std::vector<uint> still_picture(const Scene& moving, double seconds, const MovingOptions& options) {
+// The scene as it stands where the moving one is.
+Scene stopped_at(const Scene& moving, double seconds) {
   Scene still = moving;
   still.positions = on_device(test_device(), moving, seconds);
   still.motion = nullptr;
-  const SceneArrays arrays = scene_arrays(still);
-  Layout layout(test_device().properties().max_block_bytes);
-  const FramePlan plan = plan_frame(layout, arrays, {.build = options.build, .trace = options.trace});
-  GpuExecutor executor(test_device(), layout);
-  upload_frame(executor, plan.tree, plan.trace, arrays, film_of(moving, options));
-  Chain chain = executor.chain();
-  append_frame(chain, plan);
-  executor.record(chain.steps()).submit_and_wait(limit);
-  return executor.read(plan.trace.image);
+  return still;
 }
 
 using MovingFramesTest = DeviceTest;
@@ -176,11 +149,14 @@ TEST_F(MovingFramesTest, AreThePicturesOfWhatStandsThere) {
   const Scene scene = make_moving(3000);
   for (const Walk walk : {Walk::binary, Walk::wide_packets}) {
     const MovingOptions options =
-        options_for(walk, walk == Walk::binary ? DeviceBuilder::ploc : DeviceBuilder::hploc);
+        moving_options(walk, walk == Walk::binary ? DeviceBuilder::ploc : DeviceBuilder::hploc);
     MovingFrames frames(test_device(), scene, options);
     for (const double seconds : {0.0, 1.1, 3.0}) {
       const auto image = frame_at(frames, seconds, film_of(scene, options));
-      EXPECT_EQ(image_hash(image), image_hash(still_picture(scene, seconds, options))) << seconds;
+      EXPECT_EQ(image_hash(image),
+                image_hash(still_picture(stopped_at(scene, seconds), film_of(scene, options), options.build,
+                                         options.trace)))
+          << seconds;
     }
   }
 }
@@ -189,7 +165,7 @@ TEST_F(MovingFramesTest, AreTheSameBitsInAnyOrderAndWithAnyNumberUnderWay) {
   const Scene scene = all_that_moves(60);
   std::vector<std::uint64_t> hashes[2];
   for (const std::uint32_t under_way : {1u, 3u}) {
-    MovingOptions options = options_for(Walk::binary);
+    MovingOptions options = moving_options(Walk::binary);
     options.under_way = under_way;
     MovingFrames frames(test_device(), scene, options);
     const Film film = film_of(scene, options);
@@ -214,7 +190,7 @@ TEST_F(MovingFramesTest, AreTheSameBitsInAnyOrderAndWithAnyNumberUnderWay) {
 TEST_F(MovingFramesTest, AreTheSamePicturesByRefits) {
   for (const Scene& scene : {make_moving(2000), all_that_moves(60)}) {
     for (const Walk walk : {Walk::binary, Walk::wide_packets, Walk::wide_single}) {
-      MovingOptions options = options_for(walk);
+      MovingOptions options = moving_options(walk);
       MovingFrames built(test_device(), scene, options);
       for (const Update update : {Update::refit, Update::automatic}) {
         options.update = update;
@@ -249,7 +225,7 @@ TEST_F(MovingFramesTest, AreBuiltWhereTrianglesAppear) {
   }
   motion->sequences = {sequence};
   scene.motion = motion;
-  MovingOptions options = options_for(Walk::wide_packets);
+  MovingOptions options = moving_options(Walk::wide_packets);
   options.update = Update::refit;
   MovingFrames frames(test_device(), scene, options);
   options.update = Update::rebuild;
@@ -270,7 +246,7 @@ TEST_F(MovingFramesTest, AreBuiltWhereTrianglesAppear) {
 
 TEST_F(MovingFramesTest, RefuseWhatHasNoRoom) {
   const Scene scene = make_moving(50);
-  MovingOptions options = options_for(Walk::binary);
+  MovingOptions options = moving_options(Walk::binary);
   options.under_way = 1;
   MovingFrames frames(test_device(), scene, options);
   EXPECT_THROW(frames.take(), std::logic_error);
@@ -299,7 +275,7 @@ TEST_F(MovingFramesTest, MayLoseAllTriangles) {
   }
   motion->sequences = {sequence};
   scene.motion = motion;
-  const MovingOptions options = options_for(Walk::wide_packets);
+  const MovingOptions options = moving_options(Walk::wide_packets);
   MovingFrames frames(test_device(), scene, options);
   const Film film = film_of(scene, options);
   const std::vector<uint> whole = frame_at(frames, 0, film);
@@ -318,7 +294,7 @@ TEST_F(MovingFramesTest, MayLoseAllTriangles) {
 TEST_F(MovingFramesTest, LikeAGpuGoThroughMappedMemory) {
   Device like_a_gpu({"", true, true});
   const Scene scene = make_moving(500);
-  const MovingOptions options = options_for(Walk::wide_packets);
+  const MovingOptions options = moving_options(Walk::wide_packets);
   MovingFrames frames(like_a_gpu, scene, options), here(test_device(), scene, options);
   const Film film = film_of(scene, options);
   EXPECT_EQ(frame_at(frames, 0.7, film), frame_at(here, 0.7, film));

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <vector>
+
+#include "render/film.h"
+#include "render/moving_frames.h"
+#include "support/test_device.h"
+
+namespace coppice {
+
+inline MovingOptions moving_options(Walk walk = Walk::binary, DeviceBuilder builder = DeviceBuilder::hploc) {
+  MovingOptions options;
+  options.trace = test_trace_options(64, 48);
+  options.trace.walk = walk;
+  options.build.builder = builder;
+  return options;
+}
+
+inline Film film_of(const Scene& scene, const MovingOptions& options) {
+  return make_film(scene, {}, options.trace.width, options.trace.height, options.trace.samples);
+}
+
+inline std::vector<uint> frame_at(MovingFrames& frames, double seconds, const Film& film) {
+  frames.submit(seconds, film);
+  const MovingFrame frame = frames.take();
+  return {frame.image.begin(), frame.image.end()};
+}
+
+// The picture of a scene that stands still, through one level.
+inline std::vector<uint> still_picture(const Scene& still, const Film& film, const BuildOptions& build,
+                                       const TraceOptions& trace) {
+  const SceneArrays arrays = scene_arrays(still);
+  Layout layout(test_device().properties().max_block_bytes);
+  const FramePlan plan = plan_frame(layout, arrays, {.build = build, .trace = trace});
+  EXPECT_FALSE(plan.levels);
+  GpuExecutor executor(test_device(), layout);
+  upload_frame(executor, plan, arrays, film);
+  Chain chain = executor.chain();
+  append_frame(chain, plan);
+  executor.record(chain.steps()).submit_and_wait(submit_limit_seconds);
+  EXPECT_EQ(executor.read(plan.tree.state)[0].error_word, 0u);
+  return executor.read(plan.trace.image);
+}
+
+}  // namespace coppice
