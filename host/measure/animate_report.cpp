@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -49,26 +50,14 @@ constexpr TimedPart timed_parts[] = {
     {"wide", "the tree with eight children a node", &AnimatedFrame::wide_ms},
     {"trace", "camera rays to picture", &AnimatedFrame::trace_ms}};
 
-std::string csv_of_frames(const AnimateReport& report) {
-  Table table({{.key = "frame", .places = IN_CSV},
-               {.key = "frame_ms", .precision = 3, .places = IN_CSV},
-               {.key = "device_ms", .precision = 3, .places = IN_CSV},
-               {.key = "vertices_ms", .precision = 3, .places = IN_CSV},
-               {.key = "build_ms", .precision = 3, .places = IN_CSV},
-               {.key = "wide_ms", .precision = 3, .places = IN_CSV},
-               {.key = "trace_ms", .precision = 3, .places = IN_CSV},
-               {.key = "rebuilt", .places = IN_CSV},
-               {.key = "sah", .precision = 4, .places = IN_CSV},
-               {.key = "active", .places = IN_CSV},
-               {.key = "hits", .places = IN_CSV},
-               {.key = "steps", .places = IN_CSV},
-               {.key = "image_hash", .places = IN_CSV, .quoted = false}});
-  for (const AnimatedFrame& f : report.frames) {
-    table.add({{std::uint64_t{f.number}, f.frame_ms, f.device_ms, f.vertices_ms, f.update_ms, f.wide_ms,
-                f.trace_ms, std::uint64_t{f.rebuilt}, report.tree_cost ? Cell(f.sah) : Cell(),
-                std::uint64_t{f.active_count}, f.hits, f.steps, hex16(f.hash)}});
+// One a frame from the first to the last, NaN where there is none.
+std::vector<double> curve_of(const AnimateReport& report, FrameValue value) {
+  std::vector<double> values;
+  for (const AnimatedFrame& frame : report.frames) {
+    values.resize(frame.number - report.frames.front().number, std::numeric_limits<double>::quiet_NaN());
+    values.push_back(frame.*value);
   }
-  return table.csv();
+  return values;
 }
 
 }  // namespace
@@ -153,16 +142,26 @@ std::string text_of(const AnimateReport& report) {
   return text;
 }
 
-std::string to_csv(const AnimateReport& report) { return csv_of_frames(report) + "\n"; }
-
-// One a frame from the first to the last, NaN where there is none.
-std::vector<double> curve_of(const AnimateReport& report, FrameValue value) {
-  std::vector<double> values;
-  for (const AnimatedFrame& frame : report.frames) {
-    values.resize(frame.number - report.frames.front().number, std::numeric_limits<double>::quiet_NaN());
-    values.push_back(frame.*value);
+std::string to_csv(const AnimateReport& report) {
+  Table table({{.key = "frame", .places = IN_CSV},
+               {.key = "frame_ms", .precision = 3, .places = IN_CSV},
+               {.key = "device_ms", .precision = 3, .places = IN_CSV},
+               {.key = "vertices_ms", .precision = 3, .places = IN_CSV},
+               {.key = "build_ms", .precision = 3, .places = IN_CSV},
+               {.key = "wide_ms", .precision = 3, .places = IN_CSV},
+               {.key = "trace_ms", .precision = 3, .places = IN_CSV},
+               {.key = "rebuilt", .places = IN_CSV},
+               {.key = "sah", .precision = 4, .places = IN_CSV},
+               {.key = "active", .places = IN_CSV},
+               {.key = "hits", .places = IN_CSV},
+               {.key = "steps", .places = IN_CSV},
+               {.key = "image_hash", .places = IN_CSV, .quoted = false}});
+  for (const AnimatedFrame& f : report.frames) {
+    table.add({{std::uint64_t{f.number}, f.frame_ms, f.device_ms, f.vertices_ms, f.update_ms, f.wide_ms,
+                f.trace_ms, std::uint64_t{f.rebuilt}, report.tree_cost ? Cell(f.sah) : Cell(),
+                std::uint64_t{f.active_count}, f.hits, f.steps, hex16(f.hash)}});
   }
-  return values;
+  return table.csv() + "\n";
 }
 
 std::string to_svg(const AnimateReport& report) {
