@@ -70,6 +70,32 @@ TEST_F(CommandAnimate, TwoProcessesShareASequence) {
   EXPECT_EQ(read("shared/frame_00005.png"), "as it was");
 }
 
+// By a program of that name, which here writes down what it is told.
+TEST_F(CommandAnimate, LetsFfmpegMakeAFilmOrSaysWhatItSaid) {
+  const auto run_by = [](const std::string& script, const std::string& arguments) {
+    fs::create_directory("bin");
+    write("bin/ffmpeg", "#!/bin/sh\n" + script + "\n");
+    fs::permissions("bin/ffmpeg", fs::perms::owner_all);
+    return run_with("export PATH=\"$PWD/bin:$PATH\"; ", std::string(small_scene) + arguments);
+  };
+  const std::string tell = "for last; do :; done; echo \"$@\" > \"$last\"";
+  const Outcome made = run_by(tell, "--frames 3..4 --fps 12 -o 50%of --video film.mp4");
+  ASSERT_EQ(made.status, 0) << made.err;
+  const std::string told = read("film.mp4");
+  for (const char* const part :
+       {"-framerate 12 ", "-start_number 3 ", "-i 50%%of/frame_%05d.png ", "-frames:v 2 "})
+    EXPECT_NE(told.find(part), std::string::npos) << told;
+  EXPECT_TRUE(fs::exists("50%of/frame_00004.png"));
+
+  const Outcome failed =
+      run_by("echo no such codec >&2; exit 3", "--frames 2 -o shots --video film.webp --json frames.json");
+  EXPECT_EQ(failed.status, 1);
+  EXPECT_NE(failed.err.find("film.webp: ffmpeg failed: no such codec"), std::string::npos) << failed.err;
+  EXPECT_FALSE(fs::exists("film.webp") || fs::exists(".part-film.webp"));
+  EXPECT_TRUE(fs::exists("shots/frame_00001.png"));
+  EXPECT_EQ(json::parse(read("frames.json"))["frames"], 2) << "what was measured is not lost";
+}
+
 TEST_F(CommandAnimate, WritesCurvesAndATable) {
   const Outcome outcome =
       run(std::string(small_scene) + "--frames 2..4 --fps 10 --plot curves.svg --csv frames.csv");

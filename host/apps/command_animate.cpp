@@ -133,11 +133,11 @@ class AnimateCommand : public Command {
     runs.trace = device.picture_options(runs.trace, static_cast<std::uint32_t>(scene.indices.size()));
     if (!scene.instances.empty()) runs.trace.walk = Walk::binary;
     const AnimateReport report = animate(device, scene, runs);
-    make_video(runs.frames_per_second);
     if (files.talks()) print(text_of(report));
     if (!files.csv.empty()) write_file(files.csv, to_csv(report));
     if (!files.plot.empty()) write_file(files.plot, to_svg(report));
     write_json(files.json, to_json(report));
+    make_video(runs.frames_per_second);  // last: whatever ffmpeg does, the rest is there
     return validation_status(device);
   }
 
@@ -209,6 +209,7 @@ class AnimateCommand : public Command {
     words.insert(words.end(), how.begin(), how.end());
     const fs::path whole = video_, part = whole.parent_path() / (".part-" + whole.filename().string());
     words.push_back(part);
+    const InterruptionGuard guard;  // no part of a film is left behind
     const ChildResult made = run_program("ffmpeg", words, video_limit_seconds);
     std::error_code error;
     if (made.exit_status == 0 && !made.timed_out) {
