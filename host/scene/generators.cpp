@@ -33,13 +33,6 @@ void append_scattered(Scene& scene, glm::vec3 centre, float radius, Random& rand
   append_triangle(scene, a, b, point_in(centre, radius, random), material);
 }
 
-Material coloured(std::string name, glm::vec3 colour) {
-  Material material;
-  material.name = std::move(name);
-  material.diffuse = colour;
-  return material;
-}
-
 }  // namespace
 
 Scene make_scatter(std::uint32_t triangle_count, std::uint64_t seed) {

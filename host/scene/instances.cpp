@@ -47,13 +47,6 @@ void append_instance(const Scene& scene, const Instance& instance, Scene& flat) 
   flat.material_index.insert(flat.material_index.end(), materials, materials + mesh.triangle_count);
 }
 
-Material painted(std::string name, glm::vec3 colour) {
-  Material material;
-  material.name = std::move(name);
-  material.diffuse = colour;
-  return material;
-}
-
 void append_box(Scene& scene, float half, std::uint32_t material) {
   const auto corner = [&](int i) { return half * glm::vec3{i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1}; };
   constexpr int faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
@@ -168,8 +161,8 @@ std::uint64_t swarm_triangles(std::uint32_t instance_count) {
 Scene make_instances(std::uint32_t instance_count) {
   Scene scene;
   scene.name = "instances:" + std::to_string(instance_count);
-  scene.materials = {painted("stone", {0.52f, 0.50f, 0.47f}), painted("fern", {0.30f, 0.52f, 0.20f}),
-                     painted("box", {0.72f, 0.42f, 0.30f})};
+  scene.materials = {coloured("stone", {0.52f, 0.50f, 0.47f}), coloured("fern", {0.30f, 0.52f, 0.20f}),
+                     coloured("box", {0.72f, 0.42f, 0.30f})};
   Random shapes(1), places(2);
   append_rock(scene, glm::vec3{0}, {0.9f, 0.6f, 0.7f}, shapes, 0);
   end_mesh(scene);

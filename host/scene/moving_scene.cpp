@@ -5,6 +5,7 @@
 #include "scene/generators.h"
 #include "scene/motion.h"
 #include "scene/random.h"
+#include "scene/shapes.h"
 
 namespace coppice {
 namespace {
@@ -33,13 +34,6 @@ VertexRange append_grid(Scene& scene, std::uint32_t triangle_count, float column
   return {first, static_cast<std::uint32_t>(scene.positions.size()) - first};
 }
 
-void append_piece(Scene& scene, glm::vec3 a, glm::vec3 b, glm::vec3 c, std::uint32_t material) {
-  const auto first = static_cast<std::uint32_t>(scene.positions.size());
-  scene.positions.insert(scene.positions.end(), {a, b, c});
-  scene.indices.emplace_back(first, first + 1, first + 2);
-  scene.material_index.push_back(material);
-}
-
 glm::vec3 on_ball(float across, float along) {
   const glm::vec2 around = turn_to_circle(across), up = turn_to_circle(0.5f * along - 0.25f);
   return {up.x * around.x, up.y, up.x * around.y};
@@ -53,7 +47,7 @@ VertexRange append_shell(Scene& scene, std::uint32_t triangle_count, glm::vec3 c
               [&](float x, float y) { return centre + radius * on_ball(x, y); });
   const auto first = static_cast<std::uint32_t>(scene.positions.size());
   for (const glm::uvec3& t : ball.indices)
-    append_piece(scene, ball.positions[t.x], ball.positions[t.y], ball.positions[t.z], material);
+    append_triangle(scene, ball.positions[t.x], ball.positions[t.y], ball.positions[t.z], material);
   return {first, 3 * triangle_count};
 }
 
@@ -68,16 +62,9 @@ VertexRange append_swarm(Scene& scene, std::uint32_t triangle_count, glm::vec3 c
     const glm::vec3 at = centre + glm::vec3{distance * circle.x, up, distance * circle.y};
     const glm::vec3 b = at + size * random.in_cube();
     const glm::vec3 c = at + size * random.in_cube();
-    append_piece(scene, at, b, c, material);
+    append_triangle(scene, at, b, c, material);
   }
   return {first, 3 * triangle_count};
-}
-
-Material named(std::string name, glm::vec3 colour) {
-  Material material;
-  material.name = std::move(name);
-  material.diffuse = colour;
-  return material;
 }
 
 }  // namespace
@@ -86,8 +73,8 @@ Scene make_moving(std::uint32_t triangle_count) {
   enum : std::uint32_t { WATER, COLUMN, SHELL, SWARM };
   Scene scene;
   scene.name = "moving:" + std::to_string(triangle_count);
-  scene.materials = {named("water", {0.16f, 0.42f, 0.56f}), named("column", {0.82f, 0.62f, 0.34f}),
-                     named("shell", {0.78f, 0.26f, 0.22f}), named("swarm", {0.90f, 0.88f, 0.62f})};
+  scene.materials = {coloured("water", {0.16f, 0.42f, 0.56f}), coloured("column", {0.82f, 0.62f, 0.34f}),
+                     coloured("shell", {0.78f, 0.26f, 0.22f}), coloured("swarm", {0.90f, 0.88f, 0.62f})};
   const std::uint32_t fifth = triangle_count / 5;
   const glm::vec3 column_foot{-3, -0.5f, 0}, shell_centre{6, 3.5f, -2};
   const VertexRange water = append_grid(scene, triangle_count - 3 * fifth, 1.0f, WATER, [](float x, float y) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <utility>
 
 namespace coppice {
 namespace {
@@ -48,6 +49,13 @@ void append_patch(Scene& scene, glm::vec3 a, glm::vec3 b, glm::vec3 c, int depth
 }
 
 }  // namespace
+
+Material coloured(std::string name, glm::vec3 colour) {
+  Material material;
+  material.name = std::move(name);
+  material.diffuse = colour;
+  return material;
+}
 
 void append_triangle(Scene& scene, glm::vec3 a, glm::vec3 b, glm::vec3 c, std::uint32_t material) {
   const auto first = static_cast<std::uint32_t>(scene.positions.size());

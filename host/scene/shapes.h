@@ -2,11 +2,15 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 
 #include "scene/random.h"
 #include "scene/scene.h"
 
 namespace coppice {
+
+// A material that is nothing but a colour.
+Material coloured(std::string name, glm::vec3 colour);
 
 // Appends one triangle with vertices of its own.
 void append_triangle(Scene& scene, glm::vec3 a, glm::vec3 b, glm::vec3 c, std::uint32_t material);
