@@ -6,19 +6,13 @@
 #include "lib/camera_ray.glsl"
 #include "lib/film_pixel.glsl"
 #include "lib/ray_words.glsl"
-#include "lib/scene_light.glsl"
-#include "lib/srgb_code.glsl"
 #include "lib/subgroup_run.glsl"
 
 layout(local_size_x = SHADE_GROUP) in;
 layout(push_constant, scalar) uniform Push { ShadePixelsArgs args; };
 layout(constant_id = 0) const uint SHADE_DIRECTIONAL_LIGHT = 1u;  // 0 where the scene has none
 
-vec3 surface(uint triangle, vec3 direction, Lighting lighting) {
-  SurfaceMaterial material = args.materials.at[args.material_index.at[triangle]];
-  if (SHADE_DIRECTIONAL_LIGHT == 0u) return material.ambient;
-  return lit(material, args.triangles.at[triangle], direction, lighting);
-}
+#include "lib/plain_pixel.glsl"
 
 void main() {
   Film film = args.film.at[0];
@@ -27,8 +21,6 @@ void main() {
   [[dont_unroll]] for (uint i = run.first; i < run.last; i += LANES) {
     uvec2 pixel = film_pixel(args.first_ray + i, film);
     vec3 direction = camera_direction(vec2(pixel) + 0.5, film);
-    uint triangle = args.hits.at[i].triangle;
-    vec3 colour = triangle == NO_TRIANGLE ? sky(direction, lighting) : surface(triangle, direction, lighting);
-    args.image.at[pixel.y * film.width + pixel.x] = rgba8(colour, args.srgb_thresholds);
+    args.image.at[pixel.y * film.width + pixel.x] = plain_pixel(args.hits.at[i].triangle, direction, lighting);
   }
 }

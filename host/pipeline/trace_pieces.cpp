@@ -71,14 +71,30 @@ std::uint32_t TracePieces::band_rays() const {
 
 void TracePieces::open_range(Chain& chain, std::uint64_t work) {
   range_ = next_range(tree_, plan_.options, range_.first, band_rays(), work);
+  if (traces_pixels(plan_.options)) return;
   chain.run(stages::camera_rays,
             {chain.at(plan_.film), chain.at(plan_.rays, range_.first), chain.at(plan_.hits, range_.first),
              band_first_ + range_.first, range_.count, sample_, 0},
             groups_of(range_.count, CAMERA_RAYS_GROUP));
 }
 
-// Those of instances in one step.
+void TracePieces::append_traced_pixels(Chain& chain) const {
+  chain.run(
+      stages::trace_pixels,
+      {chain.at(tree_.wide_nodes), chain.at(tree_.wide_counts), chain.at(tree_.nodes),
+       chain.at(tree_.triangles), chain.at(plan_.counters), chain.at(tree_.state), chain.at(plan_.film),
+       chain.at(plan_.material_index), chain.at(plan_.materials), chain.at(plan_.lighting),
+       chain.at(plan_.srgb_thresholds), chain.at(plan_.image), band_first_ + range_.first, range_.count},
+      groups_of(range_.count, TRACE_PACKET), {plan_.options.max_turns, plan_.options.directional_light});
+}
+
+// Those of instances in one step, and those of pixels.
 std::uint64_t TracePieces::append_hits(Chain& chain, std::uint64_t work) {
+  if (traces_pixels(plan_.options)) {
+    append_traced_pixels(chain);
+    range_.next_triangle = std::max(tree_.triangle_count, 1u);
+    return range_.count;
+  }
   if (!levels_) return append_closest_hits(chain, tree_, plan_, range_, plan_.options, work);
   append_instance_hits(chain, levels_->plan, plan_, levels_->hits.hit_instances, range_.count, plan_.options,
                        range_.first);
@@ -139,7 +155,7 @@ void TracePieces::close_range(Chain& chain) {
   if (levels_) append_placed_hits(chain, levels_->plan, plan_, levels_->hits, range_.first, range_.count);
   if (keeps_radiance(plan_.options))
     append_radiance(chain);
-  else
+  else if (!traces_pixels(plan_.options))
     append_pixels(chain);
   range_ = {range_.first + range_.count, 0, 0};
   if (range_.first < band_rays()) return;

@@ -97,6 +97,7 @@ class TracePieces {
   };
   Surfaces surfaces(const Chain& chain) const;
   void append_pixels(Chain& chain) const;
+  void append_traced_pixels(Chain& chain) const;
   void append_radiance(Chain& chain) const;
   void append_shade(Chain& chain, Vec3Buffer radiance) const;
   void append_show(Chain& chain, Vec3Buffer radiance) const;

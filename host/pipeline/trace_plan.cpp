@@ -96,6 +96,11 @@ bool can_trace_wide(const TraceOptions& options) {
          options.box_test == BOX_ROBUST;
 }
 
+bool traces_pixels(const TraceOptions& options) {
+  return options.walk == Walk::wide_packets && can_trace_wide(options) && !keeps_radiance(options) &&
+         !options.keep_hits;
+}
+
 TraceCounts counts_of(const TraceCounters& counters) {
   const auto wide = [](uvec2 words) { return std::uint64_t{words.y} << 32 | words.x; };
   return {wide(counters.rays), wide(counters.hits), wide(counters.steps)};
@@ -171,8 +176,9 @@ TracePlan plan_trace(Layout& layout, const TreeSlots& tree, std::uint32_t materi
   plan.srgb_thresholds = layout.add<uint>("srgb_thresholds", 256);
   plan.image = layout.add<uint>("image", pixels);
   plan.counters = layout.add<TraceCounters>("counters", 1);
-  plan.rays = layout.add<Ray>("rays", plan.band_rays);
-  plan.hits = layout.add<Hit>("hits", plan.band_rays);
+  const std::uint32_t kept_rays = traces_pixels(options) ? 0 : plan.band_rays;
+  plan.rays = layout.add<Ray>("rays", kept_rays);
+  plan.hits = layout.add<Hit>("hits", kept_rays);
   plan.radiance = layout.add<vec3>("radiance", keeps_radiance(options) ? plan.band_rays : 0);
   if (options.show != SHOW_COLOR) plan.show = plan_show(layout, tree, options.show);
   if (options.show == SHOW_STEPS) plan.ray_steps = layout.add<uint>("ray_steps", plan.band_rays);

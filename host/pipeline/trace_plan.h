@@ -24,6 +24,7 @@ struct TraceOptions {
   std::uint32_t box_test = BOX_ROBUST;
   bool directional_light = true;    // what the scene calls for
   std::uint32_t show = SHOW_COLOR;  // SHOW_; brute force has no steps
+  bool keep_hits = false;           // the rays of the last sample and their hits are asked for
 };
 
 // Whether the wide tree can be walked: its tracers have the watertight and the robust test only, so that the
@@ -32,6 +33,10 @@ bool can_trace_wide(const TraceOptions& options);
 
 // Whether samples are added up before they are pixels, or what they see is not colour.
 bool keeps_radiance(const TraceOptions& options);
+
+// Whether each ray becomes a pixel at once (trace_pixels): of packets through the wide tree, where neither
+// rays nor hits nor radiance are kept.
+bool traces_pixels(const TraceOptions& options);
 
 // Rays, and what they hit: closest hits so far on the way in, t_max and NO_TRIANGLE where there is none yet.
 struct RaySlots {
@@ -56,7 +61,8 @@ struct ShowSlots {
   Slot<ShowRange> range;        // out
 };
 
-// Where a trace of a picture keeps what, beside the tree it walks.
+// Where a trace of a picture keeps what, beside the tree it walks. Rays and hits are empty where pixels are
+// traced.
 struct TracePlan : RaySlots {
   TraceOptions options;
   std::uint32_t band_rays;  // the image is traced in bands of at most so many rays

@@ -22,7 +22,8 @@ std::string describe_error_word(std::uint32_t error_word) {
        "trace_closest, trace_any, trace_candidates or trace_instances: the tree is deeper than the traversal "
        "stack"},
       {ERROR_TRACE_STEPS,
-       "trace_closest, trace_wide, trace_wide_single, trace_any, trace_wide_any, trace_candidates "
+       "trace_closest, trace_wide, trace_wide_single, trace_pixels, trace_any, trace_wide_any, "
+       "trace_candidates "
        "or trace_instances: a ray needs more steps than this driver's loops may take"},
       {ERROR_COUNT,
        "primitive_bounds, box_bounds, sort_pass, sort_scatter, prefix_scan or batch_build: the count on the "

@@ -75,6 +75,7 @@
   STAGE(shade, ShadeArgs, ShadeConstants, nearly_radiance)                             \
   STAGE(show, ShowArgs, ShowConstants, nearly_radiance)                                \
   STAGE(shade_pixels, ShadePixelsArgs, ShadeConstants, nearly_image)                   \
+  STAGE(trace_pixels, TracePixelsArgs, TracePixelsConstants, nearly_pixels)            \
   STAGE(resolve, ResolveArgs, NoConstants, nearly_image)                               \
   STAGE(copy_words, CopyWordsArgs, NoConstants, exactly)                               \
   STAGE(scan_tile_sums, ScanTileSumsArgs, NoConstants, exactly)                        \
@@ -100,6 +101,7 @@ inline constexpr NearlySlot nearly_levels[] = {
 inline constexpr NearlySlot nearly_bounced[] = {{"bounced_rays", Nearly::rays}};
 inline constexpr NearlySlot nearly_radiance[] = {{"radiance", Nearly::radiance}};
 inline constexpr NearlySlot nearly_image[] = {{"image", Nearly::image}};
+inline constexpr NearlySlot nearly_pixels[] = {{"image", Nearly::image}, {"counters", Nearly::counters}};
 }  // namespace stages
 
 #define COPPICE_DECLARE_STAGE(stem, Args, Constants, nearly) \

@@ -121,6 +121,13 @@ Bytes shade_pixels(const ShadePixelsArgs& a, const RunCounts& counts) {
          share(counts.hits, a.ray_count, counts) * (4 + sizeof(SurfaceMaterial) + sizeof(Triangle));
 }
 
+Bytes trace_pixels(const TracePixelsArgs& a, const RunCounts& counts) {
+  return Bytes{a.ray_count} * 4 +
+         share(counts.steps / TRACE_PACKET * sizeof(WideNode) +
+                   counts.hits * (4 + sizeof(SurfaceMaterial) + sizeof(Triangle)),
+               a.ray_count, counts);
+}
+
 Bytes resolve(const ResolveArgs& a, const RunCounts&) { return Bytes{a.ray_count} * (sizeof(vec3) + 4); }
 
 }  // namespace coppice::traffic

@@ -7,6 +7,8 @@ namespace coppice::twins {
 // Which primitives one ray sees; of the arguments of any trace.
 class Sight {
  public:
+  Sight() = default;  // of a ray that sees all
+
   template <class Args>
   Sight(const Args& args, uint ray) : flags_(args.primitive_flags), mask_(args.ray_mask) {
     if (args.ray_masks.value != 0) mask_ &= args.ray_masks[ray];
@@ -22,8 +24,8 @@ class Sight {
     return flags_.value == 0 ? PRIMITIVE_FLAGS_DEFAULT : flags_[primitive];
   }
 
-  Address<const uint> flags_;
-  uint mask_;
+  Address<const uint> flags_{};
+  uint mask_ = PRIMITIVE_MASK;
 };
 
 }  // namespace coppice::twins

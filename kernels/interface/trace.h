@@ -266,6 +266,24 @@ struct ShadePixelsArgs {
   uint ray_count;
 };
 
+// The same pictures through a wide tree, watertight and robust, with no ray and no hit kept.
+struct TracePixelsArgs {
+  READS(WideNodeBuffer) wide_nodes;  // these three as in TraceWideArgs
+  READS(WideCountsBuffer) wide_counts;
+  READS(NodeBuffer) nodes;
+  READS(TriangleBuffer) triangles;
+  TraceCountersBuffer counters;
+  BuildStateBuffer state;
+  READS(FilmBuffer) film;  // this and what follows as in ShadePixelsArgs
+  READS(UintBuffer) material_index;
+  READS(SurfaceMaterialBuffer) materials;
+  READS(LightingBuffer) lighting;
+  READS(UintBuffer) srgb_thresholds;
+  UintBuffer image;
+  uint first_ray;
+  uint ray_count;
+};
+
 struct ResolveArgs {
   READS(FilmBuffer) film;
   READS(Vec3Buffer) radiance;         // one a ray
@@ -291,6 +309,11 @@ struct TraceWideConstants {
   uint max_turns;
   uint masked;
   uint counts_rays;
+};
+
+struct TracePixelsConstants {
+  uint max_turns;
+  uint directional_light;  // as in ShadeConstants
 };
 
 struct TraceCandidatesConstants {

@@ -29,11 +29,13 @@ struct Frame {
   Walk walk;
   uint show = SHOW_COLOR;
   std::uint32_t samples = 1;
+  bool keep_hits = true;
 };
 constexpr Frame frames[] = {
     {1000, DeviceBuilder::ploc, true, Walk::binary},
     {1000, DeviceBuilder::hploc, true, Walk::wide_packets},
     {1000, DeviceBuilder::hploc, true, Walk::wide_single},
+    {1000, DeviceBuilder::hploc, true, Walk::wide_packets, SHOW_COLOR, 1, false},
     {300, DeviceBuilder::ploc, true, Walk::brute_force, SHOW_COLOR, 2},
     {SORT_SCAN_TILE + 100, DeviceBuilder::ploc, false, Walk::binary},  // one tile alone sorts without a scan
     {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_DEPTH}};
@@ -55,6 +57,7 @@ Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
   trace_options.walk = frame.walk;
   trace_options.show = frame.show;
   trace_options.samples = frame.samples;
+  trace_options.keep_hits = frame.keep_hits;
   std::optional<WidePlan> wide;
   if (is_wide(frame.walk)) wide = plan_wide(layout, build, &build);
   const TracePlan trace =
@@ -77,6 +80,7 @@ Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
     append_build(chain, build);
     if (wide) append_wide(chain, build, *wide);
     append_trace(chain, build, trace);
+    if (!frame.keep_hits) return spoil(chain.steps(), executor);
     append_bounce(chain, build, trace, bounced, trace.band_rays, 1);
     if (frame.walk != Walk::brute_force) append_any_hits(chain, build, any, trace.band_rays, trace_options);
     append_candidates(chain, build, boxes, trace.band_rays, trace_options);
