@@ -42,6 +42,38 @@ TEST_F(CommandAnimate, SaysWhatEveryFrameTook) {
     EXPECT_TRUE(kernels.contains(stage)) << stage;
 }
 
+// Which dispatches have work differs from frame to frame: those of one frame must not be taken for another's.
+TEST_F(CommandAnimate, KernelsAreThoseOfTheLastFrame) {
+  write("explode.json", R"({ "duration": 1, "meshes": { "ball": { "built_in": "hard:sphere:600" } },
+      "objects": [ { "mesh": "ball", "deform": { "kind": "explode", "amount": 1, "seconds": 1 } } ] })");
+  const auto bytes_of = [&](const std::string& frames) {
+    json bytes;
+    const std::string arguments =
+        "animate explode.json --size 48x32 --builder gpu-ploc --tree wide --radius 1 ";
+    for (const json& kernel : json_of(run(arguments + "--json - --frames " + frames))["kernels"])
+      bytes[std::string(kernel["name"])] = {kernel["dispatches"], kernel["bytes"]};
+    return bytes;
+  };
+  EXPECT_EQ(bytes_of("3"), bytes_of("2..2"));
+  EXPECT_EQ(bytes_of("10"), bytes_of("9..9"));
+}
+
+// The tree that makes the first frame in the least time, whichever that is; the picture is that of any.
+TEST_F(CommandAnimate, TriesTreesFirst) {
+  const std::string frames = std::string(small_scene) + "--json - --frames ";
+  const json report = json_of(run(frames + "30"));
+  ASSERT_EQ(report["tried"].size(), 3u);
+  json least = report["tried"][0];
+  for (const json& tree : report["tried"])
+    if (tree["frame_ms"] < least["frame_ms"]) least = tree;
+  EXPECT_EQ(report["builder"], least["builder"]);
+  EXPECT_EQ(report["tree"], least["tree"] == "binary" ? "binary" : "wide");
+  const json other = json_of(run(frames + "30 --builder gpu-lbvh --tree wide-single"));
+  EXPECT_FALSE(other.contains("tried"));
+  EXPECT_EQ(other["frame_hashes"], report["frame_hashes"]);
+  EXPECT_FALSE(json_of(run(frames + "29")).contains("tried"));
+}
+
 // A few at a time, as a farm does it, the frames are those of one run; and what is there already stays.
 TEST_F(CommandAnimate, TwoProcessesShareASequence) {
   const std::string program = std::string("timeout 100 ") + COPPICE_PROGRAM + " " + small_scene;

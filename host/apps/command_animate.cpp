@@ -9,6 +9,7 @@
 #include "measure/animate.h"
 #include "measure/child_process.h"
 #include "measure/table.h"
+#include "measure/tree_choice.h"
 #include "pipeline/interruption.h"
 #include "scene/input_error.h"
 #include "scene/motion.h"
@@ -62,7 +63,7 @@ class Pictures {
 class AnimateCommand : public Command {
  public:
   AnimateCommand() {
-    builder_.name = "gpu-hploc";
+    builder_.name = "auto";
     picture_.trace.width = 640;
     picture_.trace.height = 360;
   }
@@ -86,12 +87,21 @@ class AnimateCommand : public Command {
     add_picture(app, picture_, scene_.up);
     add_tree(app, device_.choices.walk);
     add_trace_events(app, files.trace_events);
-    add_scene_and_build(app, scene_, builder_, device_, device_builder_names());
+    std::vector<std::string> builders = device_builder_names();
+    builders.insert(builders.begin(), builder_.name);
+    add_scene_and_build(app, scene_, builder_, device_, builders);
   }
 
   void check(const CLI::App&) override {
     parse_view(picture_);
     parse_frames();
+    const bool tries = last_ - first_ >= frames_worth_trying - 1;
+    if (builder_.name == "auto") {
+      builders_ = {"gpu-hploc", "gpu-ploc"};
+      builder_.name = builders_.front();
+    }
+    if (!tries) builders_.clear();
+    tries_walks_ = tries && device_.choices.walk.automatic();
     if (std::isnan(frames_per_second_)) throw CLI::ValidationError("--fps: 'nan' is no number of frames");
     if (skip_existing_ && folder_.empty())
       throw CLI::ValidationError("--skip-existing needs the pictures of -o DIR");
@@ -132,6 +142,10 @@ class AnimateCommand : public Command {
     CheckedDevice device = open_device(device_, use_for(scene));
     runs.trace = device.picture_options(runs.trace, static_cast<std::uint32_t>(scene.indices.size()));
     if (!scene.instances.empty()) runs.trace.walk = Walk::binary;
+    std::vector<Walk> walks = {runs.trace.walk};
+    if (tries_walks_ && scene.instances.empty()) walks = {Walk::binary, device.wide_walk()};
+    runs.tried =
+        choose_tree(device, scene, runs, builders_.empty() ? std::vector{builder_.name} : builders_, walks);
     const AnimateReport report = animate(device, scene, runs);
     if (files.talks()) print(text_of(report));
     if (!files.csv.empty()) write_file(files.csv, to_csv(report));
@@ -229,6 +243,8 @@ class AnimateCommand : public Command {
   std::uint32_t first_ = 0, last_ = 0;
   double frames_per_second_ = 0;  // 0: the scene's
   Update update_ = Update::rebuild;
+  std::vector<std::string> builders_;  // to choose from; empty: there is no choice
+  bool tries_walks_ = false;
   bool tree_cost_ = false, skip_existing_ = false, kernels_ = false;
   SceneOptions scene_{.spec = "moving"};
   PictureOptions picture_;

@@ -186,7 +186,7 @@ void add_tree(CLI::App& app, WalkChoice& walk) {
          "--tree", set,
          "which the device's tracer walks; wide: eight children a node, rays in packets or each by itself, "
          "as the variant of the stage trace says or the option; auto: by that variant, but binary where the "
-         "scene has more triangles than the picture rays")
+         "scene has more than four times as many triangles as the picture rays")
       ->check(CLI::IsMember({"auto", "binary", "wide", "wide-packets", "wide-single"}))
       ->default_str("auto");
 }

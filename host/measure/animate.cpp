@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "analysis/tree_hash.h"
+#include "measure/films.h"
 #include "measure/measure_build.h"
 #include "measure/progress.h"
 #include "measure/trace_events.h"
@@ -14,27 +15,6 @@ namespace coppice {
 namespace {
 
 using AnimateClock = std::chrono::steady_clock;
-
-// The film of any time, by the camera that moves where the scene still has one (stand_up); it is made once
-// where the camera stands still.
-class Films {
- public:
-  Films(const Scene& scene, const AnimateRuns& runs)
-      : motion_(runs.camera.empty() && scene.camera ? scene.motion.get() : nullptr),
-        trace_(runs.trace),
-        still_(make_film(scene, runs.camera, trace_.width, trace_.height, trace_.samples)) {}
-
-  Film at(double seconds) const {
-    if (!motion_) return still_;
-    const std::optional<Camera> camera = pose_at(*motion_, seconds).camera;
-    return camera ? make_film(*camera, trace_.width, trace_.height, trace_.samples) : still_;
-  }
-
- private:
-  const Motion* motion_;
-  TraceOptions trace_;
-  Film still_;
-};
 
 class FrameLoop {
  public:
@@ -86,10 +66,14 @@ class FrameLoop {
   AnimateClock::time_point last_done_;
 };
 
-// The kernels of the last frame that was told, each with a time of its own.
+// The kernels of the last frame, built, each with a time of its own. First all at once: which of them have
+// work is read from what a run has left, and that of another frame, or of a refit, may have had fewer rounds
+// or levels.
 void split_kernels(CheckedDevice& device, MovingFrames& frames, const AnimateRuns& runs,
                    AnimateReport& report) {
-  const KernelSplit split = split_time(frames.executor(), frames.steps(), piece_limit_seconds);
+  const std::vector<Step> steps = frames.steps();
+  frames.executor().record(steps).submit_and_wait(piece_limit_seconds);
+  const KernelSplit split = split_time(frames.executor(), steps, piece_limit_seconds);
   const FramePlan& plan = frames.plan();
   RunCounts counts = counts_of_build(frames.executor(), *plan.build, plan.wide ? &*plan.wide : nullptr);
   const RunCounts trace = counts_of_trace(frames.executor().read(plan.trace.counters)[0]);
@@ -107,6 +91,14 @@ void split_kernels(CheckedDevice& device, MovingFrames& frames, const AnimateRun
 
 }  // namespace
 
+MovingOptions moving_options(const CheckedDevice& device, const Scene& scene, const AnimateRuns& runs) {
+  const std::uint32_t bits = runs.builder.bits_for(scene_arrays(scene).triangles);
+  return {.build = device.build_options(runs.builder.build_options(bits)),
+          .trace = runs.trace,
+          .update = runs.update,
+          .tree_cost = runs.tree_cost};
+}
+
 AnimateReport animate(CheckedDevice& device, const Scene& scene, const AnimateRuns& runs) {
   const SceneArrays arrays = scene_arrays(scene);
   AnimateReport report;
@@ -120,15 +112,12 @@ AnimateReport animate(CheckedDevice& device, const Scene& scene, const AnimateRu
   report.morton_bits = runs.builder.bits_for(arrays.triangles);
   report.width = runs.trace.width;
   report.height = runs.trace.height;
-  report.walks_wide = is_wide(runs.trace.walk);
+  report.walk = runs.trace.walk;
+  report.tried = runs.tried;
   report.frames_per_second = runs.frames_per_second;
   report.update = runs.update;
   report.tree_cost = runs.tree_cost;
-  const MovingOptions options{.build = device.build_options(runs.builder.build_options(report.morton_bits)),
-                              .trace = runs.trace,
-                              .update = runs.update,
-                              .tree_cost = runs.tree_cost};
-  MovingFrames frames(device.device(), scene, options);
+  MovingFrames frames(device.device(), scene, moving_options(device, scene, runs));
   report.device_bytes = device_bytes(frames.layout());
   const Films films(scene, runs);
   const InterruptionGuard guard;

@@ -12,6 +12,13 @@
 
 namespace coppice {
 
+// A tree that was tried, and what the first frame took with it.
+struct TriedTree {
+  std::string builder;
+  Walk walk;
+  double ms;
+};
+
 // Which frames of a scene, and how. Frame k is that of second k / frames_per_second.
 struct AnimateRuns {
   BuilderChoice builder{};
@@ -25,8 +32,9 @@ struct AnimateRuns {
   std::function<bool(std::uint32_t)> skip{};
   // Takes each picture as soon as it is done, RGBA8.
   std::function<void(std::uint32_t, std::span<const uint>)> picture{};
-  bool split = false;  // the first frame once more, for the times of kernels
+  bool split = false;  // the last frame once more, for the times of kernels
   std::string trace_events{};
+  std::vector<TriedTree> tried{};  // before; see tree_choice.h
 };
 
 // A frame, as it went.
@@ -46,7 +54,8 @@ struct AnimateReport {
   std::uint64_t triangles = 0, vertices = 0;
   std::uint64_t instances = 0;  // of meshes that have these triangles
   std::uint32_t morton_bits = 30, width = 0, height = 0;
-  bool walks_wide = false;
+  Walk walk = Walk::binary;
+  std::vector<TriedTree> tried;
   double frames_per_second = 0;
   Update update = Update::rebuild;
   bool tree_cost = false;
@@ -59,6 +68,9 @@ struct AnimateReport {
 // Each frame in one submit, the next one told while one is under way. The kernels are compiled before, by the
 // first frame, which then comes again. Throws Interrupted on SIGINT or SIGTERM between two frames.
 AnimateReport animate(CheckedDevice& device, const Scene& scene, const AnimateRuns& runs);
+
+// What a frame of these runs is made with.
+MovingOptions moving_options(const CheckedDevice& device, const Scene& scene, const AnimateRuns& runs);
 
 // As --update has it.
 const char* word_of_update(Update update);

@@ -81,7 +81,7 @@ Json to_json(const AnimateReport& report) {
                {"driver", report.driver},
                {"width", report.width},
                {"height", report.height},
-               {"tree", report.walks_wide ? "wide" : "binary"},
+               {"tree", is_wide(report.walk) ? "wide" : "binary"},
                {"frames_per_second", report.frames_per_second},
                {"frames", report.frames.size()},
                {"skipped", report.skipped},
@@ -90,6 +90,8 @@ Json to_json(const AnimateReport& report) {
   for (const TimedPart& part : timed_parts)
     json[std::string(part.name) + "_ms"] = percentiles(report, part.value);
   const auto frames = static_cast<double>(std::max<std::size_t>(report.frames.size(), 1));
+  for (const TriedTree& tree : report.tried)
+    json["tried"].push_back({{"builder", tree.builder}, {"tree", name_of(tree.walk)}, {"frame_ms", tree.ms}});
   json["host_waits_per_frame"] = static_cast<double>(report.host_waits) / frames;
   if (report.tree_cost) {
     json["sah"] = Json::array();
@@ -112,10 +114,13 @@ std::string text_of(const AnimateReport& report) {
     text += format(" in %llu instances of meshes", static_cast<unsigned long long>(report.instances));
   text += format(", %zu frames of %ux%u by %s on %s, %s tree\n", report.frames.size(), report.width,
                  report.height, report.builder.c_str(), report.device.c_str(),
-                 report.walks_wide ? "wide" : "binary");
+                 is_wide(report.walk) ? "wide" : "binary");
   text += format("  --update %s: %llu trees built, %llu refitted\n", word_of_update(report.update),
                  static_cast<unsigned long long>(report.rebuilds),
                  static_cast<unsigned long long>(report.refits));
+  for (const TriedTree& tree : report.tried)
+    text += format("  tried: %s, %s: %.2f ms\n", tree.builder.c_str(), std::string(name_of(tree.walk)).c_str(),
+                   tree.ms);
   if (report.skipped) text += format("  %u frames are there already\n", report.skipped);
   if (report.frames.empty()) return text;
   Table table({{.heading = "ms", .width = -10, .gap = 2},

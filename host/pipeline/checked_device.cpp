@@ -10,6 +10,10 @@ namespace coppice {
 
 namespace {
 
+// A conversion to wide nodes takes as long a triangle as it saves a ray of a picture, at so many triangles a
+// ray: docs/performance.md, "Which tree".
+constexpr std::uint64_t triangles_a_ray = 4;
+
 Variants choose_variants(const Device& device, const std::string& choice, const Note& note) {
   if (choice == "auto") return variants_of(device, note);
   Variants variants = default_variants(device.properties());
@@ -68,7 +72,8 @@ TraceOptions CheckedDevice::picture_options(TraceOptions wanted, std::uint32_t t
                                 " is traced with the watertight and the robust test, and needs a tree");
   if (wanted.walk == Walk::brute_force) return wanted;
   const std::uint64_t rays = std::uint64_t{wanted.width} * wanted.height * wanted.samples;
-  const bool wide = walk_.any_wide || (can && variants_.walk() != Walk::binary && rays > triangle_count);
+  const bool wide =
+      walk_.any_wide || (can && variants_.walk() != Walk::binary && rays * triangles_a_ray > triangle_count);
   wanted.walk = walk_.walk ? *walk_.walk : wide ? wide_walk() : Walk::binary;
   return wanted;
 }

@@ -143,7 +143,7 @@ void MovingFrames::append(Chain& chain, const FrameSlots& slots, bool rebuilds) 
 
 std::vector<Step> MovingFrames::steps(bool rebuilds) const {
   Chain chain = executor_.chain();
-  append(chain, slots_.front(), rebuilds);
+  append(chain, slots_[(next_slot_ + slots_.size() - 1) % slots_.size()], rebuilds);
   return std::move(chain.steps());
 }
 

@@ -67,7 +67,8 @@ class MovingFrames {
   // As if no frame had been: what those before took is forgotten, and the next one is built.
   void forget_times() { chooser_ = chooser(); }
 
-  // The steps of one frame, and what they read, for other executors and for timing each kernel.
+  // The steps of the last frame that was submitted, and what they read, for other executors and for timing
+  // each kernel.
   const FramePlan& plan() const { return plan_; }
   const Layout& layout() const { return layout_; }
   GpuExecutor& executor() { return executor_; }
