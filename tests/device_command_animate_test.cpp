@@ -62,7 +62,7 @@ TEST_F(CommandAnimate, KernelsAreThoseOfTheLastFrame) {
 TEST_F(CommandAnimate, TriesTreesFirst) {
   const std::string frames = std::string(small_scene) + "--json - --frames ";
   const json report = json_of(run(frames + "30"));
-  ASSERT_EQ(report["tried"].size(), 3u);
+  ASSERT_EQ(report["tried"].size(), 4u);
   json least = report["tried"][0];
   for (const json& tree : report["tried"])
     if (tree["frame_ms"] < least["frame_ms"]) least = tree;

@@ -97,7 +97,7 @@ class AnimateCommand : public Command {
     parse_frames();
     const bool tries = last_ - first_ >= frames_worth_trying - 1;
     if (builder_.name == "auto") {
-      builders_ = {"gpu-hploc", "gpu-ploc"};
+      builders_ = {"gpu-hploc", "gpu-ploc", "gpu-lbvh"};
       builder_.name = builders_.front();
     }
     if (!tries) builders_.clear();
