@@ -74,6 +74,17 @@ TEST_P(Chooser, WhatGetsSlowlyWorseIsBuiltNowAndThen) {
   }
 }
 
+// What rays meet more of comes of the scene, and a build takes none of it back.
+TEST_P(Chooser, BuildsThatTakeNothingBackAreRare) {
+  for (const double growth : {0.01, 0.05, 0.2}) {
+    int frame = 0;
+    const Costs costs{.trace_ms = [&](int) { return 10.0 + growth * (frame++ % 300); }};
+    const double refits_only = run(Update::refit, costs, 3000, GetParam()).ms;
+    frame = 0;
+    EXPECT_LT(run(Update::automatic, costs, 3000, GetParam()).ms, 1.02 * refits_only) << growth;
+  }
+}
+
 TEST_P(Chooser, WhatFallsApartAtOnceIsBuiltNearlyAlways) {
   const Costs costs{.trace_ms = [](int since) { return since == 0 ? 10.0 : 10.0 + 60.0 * since; }};
   const Total chosen = run(Update::automatic, costs, 2000, GetParam());

@@ -33,6 +33,7 @@ class UpdateChooser {
  private:
   bool another_refit_pays() const;
   void hold_back(const Frame& frame);
+  void learn_share(double steps);
 
   Update update_;
   bool built_ = false;                 // the first frame has been decided on
@@ -46,7 +47,11 @@ class UpdateChooser {
   double built_ms_ = 0;  // update and trace of the frame that was built
   double cycle_ms_ = 0;  // update and trace of all frames, the built one too
   std::uint32_t cycle_frames_ = 0;
-  double last_steps_ = 0, growth_ = 0;  // of steps, from frame to frame
+  double last_steps_ = 0, growth_ = 0;        // of steps, from frame to frame
+  double first_steps_ = 0, cycle_steps_ = 0;  // of the frame that was built; of all frames
+
+  // The part of what steps grow by that a build takes back; the rest is the scene's.
+  double aged_share_ = 1;
 };
 
 }  // namespace coppice
