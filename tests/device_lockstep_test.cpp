@@ -2,7 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <limits>
+#include <vector>
 
 #include "render/frame.h"
 #include "scene/hard_cases.h"
@@ -132,12 +135,8 @@ TEST_F(Lockstep, WholeFrame) {
   }
 }
 
-// A scene may overflow, and its file may hold anything; the twin and every device show the same for it.
-TEST_F(Lockstep, ColoursOutsideOfAPicture) {
-  const float infinity = std::numeric_limits<float>::infinity();
-  const float nan = std::numeric_limits<float>::quiet_NaN();
-  const std::vector<vec3> radiance = {
-      {nan, 0.05f, 1}, {0.5f, -nan, nan}, {infinity, -infinity, 2}, {-1, -0.0f, 0.0f}, {1e-30f, 1, 3e38f}};
+// The pixels of so much radiance, in lockstep.
+std::vector<uint> resolved(const std::vector<vec3>& radiance) {
   const auto count = static_cast<std::uint32_t>(radiance.size());
   Layout layout(test_device().properties().max_block_bytes);
   TraceOptions options = test_trace_options(count, 1);
@@ -153,12 +152,33 @@ TEST_F(Lockstep, ColoursOutsideOfAPicture) {
     chain.run(stages::resolve,
               {chain.at(trace.film), chain.at(trace.radiance), chain.at(trace.srgb_thresholds),
                chain.at(trace.image), 0, count},
-              uvec3(1));
+              groups_of(count, RESOLVE_GROUP));
   });
   EXPECT_FALSE(difference) << "pixel " << difference->index << "\ncpu " << difference->cpu << "\ngpu "
                            << difference->gpu;
+  return executor.gpu().read(trace.image);
+}
+
+// A scene may overflow, and its file may hold anything; the twin and every device show the same for it.
+TEST_F(Lockstep, ColoursOutsideOfAPicture) {
+  const float infinity = std::numeric_limits<float>::infinity();
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<uint> pixels = resolved(
+      {{nan, 0.05f, 1}, {0.5f, -nan, nan}, {infinity, -infinity, 2}, {-1, -0.0f, 0.0f}, {1e-30f, 1, 3e38f}});
   const std::vector<uint> expected = {0xffff3f00, 0xff0000bc, 0xffff00ff, 0xff000000, 0xffffff00};
-  EXPECT_EQ(executor.gpu().read(trace.image), expected);
+  EXPECT_EQ(pixels, expected);
+}
+
+// Where one sRGB code ends and the next one begins, and densely between.
+TEST_F(Lockstep, EveryCodeOfAColour) {
+  std::vector<vec3> radiance;
+  for (const uint bits : srgb_thresholds()) {
+    const float least = std::bit_cast<float>(bits);
+    if (least > 0) radiance.push_back({std::nextafter(least, 0.0f), least, std::nextafter(least, 2.0f)});
+  }
+  for (int i = 0; i < 20000; ++i) radiance.push_back(vec3(static_cast<float>(i) / 20000.0f));
+  const std::vector<uint> pixels = resolved(radiance);
+  for (uint code = 1; code < 256; ++code) EXPECT_EQ(pixels[code - 1] & 0xffffff, code * 0x10101 - 1) << code;
 }
 
 // --- Planted faults.
