@@ -61,12 +61,19 @@ uint list_met(WideChildren children, RayBundle bundle, float reach, float farthe
   return packet_or(list);
 }
 
-// Bit r: the r-th ray of some invocation meets the box.
-uint meet_box(vec3 box_min, vec3 box_max, float reach) {
-  uint meeting = 0u;
-  [[unroll]] for (uint r = 0u; r < RAYS; ++r) {
-    float enter = rays[r].t_min;
-    if (intersect_box_within(rays[r], box_min, box_max, reach, hits[r].t, enter)) meeting |= 1u << r;
+bool meets_box(uint r, vec3 box_min, vec3 box_max, float reach) {
+  float enter = rays[r].t_min;
+  return intersect_box_within(rays[r], box_min, box_max, reach, hits[r].t, enter);
+}
+
+// Bit r: the r-th ray of some invocation meets the box. Of a node one such ray is enough: the others are tested only if
+// none of the first ones does.
+uint meet_box(vec3 box_min, vec3 box_max, float reach, bool is_leaf) {
+  const uint first = RAYS / 2u;
+  uint meeting = meets_box(first, box_min, box_max, reach) ? 1u << first : 0u;
+  if (is_leaf || !subgroupAny(meeting != 0u)) {
+    [[unroll]] for (uint r = 0u; r < RAYS; ++r)
+      if (r != first && meets_box(r, box_min, box_max, reach)) meeting |= 1u << r;
   }
   return packet_or(meeting);
 }
@@ -103,7 +110,8 @@ uint visit(WideChildren children, RayBundle bundle, inout float farthest) {
     uint child = met & (WIDE_CHILDREN - 1u);
     met >>= 4;
     uint word = of_child(children.word, child);
-    uint meeting = meet_box(of_child(children.box_min, child), of_child(children.box_max, child), reach);
+    uint meeting =
+        meet_box(of_child(children.box_min, child), of_child(children.box_max, child), reach, word >= WIDE_LEAF);
     if (meeting != 0u) {
       if (word >= WIDE_LEAF) {
         uint index = word & ~WIDE_LEAF;
