@@ -1,7 +1,6 @@
 // In:  the wide tree in breadth-first order and its sizes. Out: its nodes in depth-first order, children in the order
 // of their slots, boxes quantised.
-// Ylitie, Karras and Laine 2017, section 3.1. Each plane is found by comparing decoded planes with the box, so that the
-// decoded box contains the child's, whatever the rounding: docs/numerics.md.
+// Ylitie, Karras and Laine 2017, section 3.1.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/wide.h"
@@ -11,45 +10,7 @@ layout(push_constant, scalar) uniform Push { WideQuantiseArgs args; };
 
 #include "lib/node_words.glsl"
 #include "lib/wide_groups.glsl"
-
-struct Grid {
-  vec3 origin, cell;
-};
-
-vec3 plane(Grid grid, vec3 q) {
-  precise vec3 position = grid.origin + q * grid.cell;
-  return position;
-}
-
-vec3 cells_of(uvec3 exponents) { return uintBitsToFloat(exponents << 23); }
-
-// The smallest powers of two with which the grid reaches the other end of the box. It is one of three, see
-// docs/numerics.md.
-uvec3 cell_exponents(Node node) {
-  precise vec3 extent = node.box_max - node.box_min;
-  uvec3 exponents = max(floatBitsToUint(extent) >> 23, uvec3(WIDE_LEAST_EXPONENT + 8u)) - 8u;
-  [[unroll]] for (uint larger = 0u; larger < 2u; ++larger) {
-    bvec3 short_of_it = lessThan(plane(Grid(node.box_min, cells_of(exponents)), vec3(255.0)), node.box_max);
-    exponents += mix(uvec3(0u), uvec3(1u), short_of_it);
-  }
-  return exponents;
-}
-
-// The last planes that are not above the position.
-uvec3 planes_below(Grid grid, vec3 position) {
-  vec3 q = vec3(0.0);
-  [[unroll]] for (uint bit = 128u; bit > 0u; bit >>= 1)
-    q = mix(q, q + float(bit), lessThanEqual(plane(grid, q + float(bit)), position));
-  return uvec3(q);
-}
-
-// The first planes that are not below the position.
-uvec3 planes_above(Grid grid, vec3 position) {
-  vec3 q = vec3(0.0);
-  [[unroll]] for (uint bit = 128u; bit > 0u; bit >>= 1)
-    q = mix(q, q + float(bit), lessThan(plane(grid, q + float(bit - 1u)), position));
-  return uvec3(q);
-}
+#include "lib/wide_planes.glsl"
 
 // The place in depth-first order.
 uint find_place(uint entry) {
@@ -61,29 +22,36 @@ uint find_place(uint entry) {
   return place;
 }
 
+uint children[WIDE_CHILDREN];
+
+void load_children(uint index) {
+  u64vec4 words = NodeWordsBuffer(args.children).at[index];
+  [[unroll]] for (uint pair = 0u; pair < WIDE_CHILDREN / 2u; ++pair) {
+    uvec2 both = unpackUint2x32(words[pair]);
+    children[2u * pair] = both.x;
+    children[2u * pair + 1u] = both.y;
+  }
+}
+
 // Writes the child words. All children are read at once, as each waits for memory; their boxes come with them.
-void place_children(uint index, uint place, uint wide_child) {
-  uint children[WIDE_CHILDREN], words[WIDE_CHILDREN];
-  [[unroll]] for (uint slot = 0u; slot < WIDE_CHILDREN; ++slot)
-    children[slot] = args.children.at[index * WIDE_CHILDREN + slot];
+void place_children(uint place, uint wide_child) {
+  uint words[WIDE_CHILDREN];
   [[unroll]] for (uint slot = 0u; slot < WIDE_CHILDREN; ++slot) {
     bool is_node = (children[slot] & WIDE_LEAF) == 0u, is_empty = children[slot] == WIDE_EMPTY;
     uint below = args.nodes.at[is_empty ? 0u : children[slot] & ~WIDE_LEAF].child;
     words[slot] = is_node ? place + args.offsets.at[wide_child] : is_empty ? WIDE_EMPTY : WIDE_LEAF | below;
     wide_child += is_node ? 1u : 0u;
   }
-  [[unroll]] for (uint slot = 0u; slot < WIDE_CHILDREN; ++slot) args.wide_nodes.at[place].child[slot] = words[slot];
+  u64vec4 pairs;
+  [[unroll]] for (uint pair = 0u; pair < WIDE_CHILDREN / 2u; ++pair)
+    pairs[pair] = packUint2x32(uvec2(words[2u * pair], words[2u * pair + 1u]));
+  NodeWordsBuffer(args.wide_nodes).at[3u * place + 2u] = pairs;
 }
 
-// The planes of a child as two words: min x, y, z, max x and max y, z.
-uvec2 planes_of(uint child, Grid grid) {
-  uvec3 low = uvec3(255u), high = uvec3(0u);
-  if (child != WIDE_EMPTY) {
-    Node node = load_node(args.nodes, child & ~WIDE_LEAF);
-    low = planes_below(grid, node.box_min);
-    high = planes_above(grid, node.box_max);
-  }
-  return uvec2(low.x | low.y << 8 | low.z << 16 | high.x << 24, high.y | high.z << 8);
+uvec2 child_planes(uint child, Grid grid) {
+  Node node = load_node(args.nodes, child == WIDE_EMPTY ? 0u : child & ~WIDE_LEAF);
+  uvec2 planes = planes_of(grid, node.box_min, node.box_max);
+  return child == WIDE_EMPTY ? EMPTY_PLANES : planes;
 }
 
 void main() {
@@ -91,18 +59,25 @@ void main() {
   if (index >= args.counts.at[0].node_count) return;
   WideEntry entry = args.entries.at[index];
   uint place = find_place(index);
-  place_children(index, place, entry.first_child);
+  load_children(index);
+  place_children(place, entry.first_child);
   Node root = load_node(args.nodes, entry.root);
   if (root.box_min.x > root.box_max.x) root = Node(vec3(0.0), 0u, vec3(0.0), 0u);  // NOTHING_BOX: no child has a box
   uvec3 exponents = cell_exponents(root);
-  Grid grid = Grid(root.box_min, cells_of(exponents));
-  args.wide_nodes.at[place].origin = grid.origin;
-  args.wide_nodes.at[place].exponents = exponents.x | exponents.y << 8 | exponents.z << 16;
-  [[dont_unroll]] for (uint pair = 0u; pair < WIDE_CHILDREN / 2u; ++pair) {
-    uint list = index * WIDE_CHILDREN + 2u * pair;
-    uvec2 even = planes_of(args.children.at[list], grid), odd = planes_of(args.children.at[list + 1u], grid);
-    args.wide_nodes.at[place].planes[3u * pair] = even.x;
-    args.wide_nodes.at[place].planes[3u * pair + 1u] = even.y | odd.x << 16;
-    args.wide_nodes.at[place].planes[3u * pair + 2u] = odd.x >> 16 | odd.y << 16;
+  Grid grid = grid_of(root.box_min, exponents);
+  uint words[4 + WIDE_PLANE_WORDS];
+  [[unroll]] for (uint axis = 0u; axis < 3u; ++axis) words[axis] = floatBitsToUint(grid.origin[axis]);
+  words[3] = exponents.x | exponents.y << 8 | exponents.z << 16;
+  [[unroll]] for (uint pair = 0u; pair < WIDE_CHILDREN / 2u; ++pair) {
+    uvec2 even = child_planes(children[2u * pair], grid), odd = child_planes(children[2u * pair + 1u], grid);
+    words[4u + 3u * pair] = even.x;
+    words[5u + 3u * pair] = even.y | odd.x << 16;
+    words[6u + 3u * pair] = odd.x >> 16 | odd.y << 16;
+  }
+  [[unroll]] for (uint row = 0u; row < 2u; ++row) {
+    u64vec4 pairs;
+    [[unroll]] for (uint pair = 0u; pair < 4u; ++pair)
+      pairs[pair] = packUint2x32(uvec2(words[8u * row + 2u * pair], words[8u * row + 2u * pair + 1u]));
+    NodeWordsBuffer(args.wide_nodes).at[3u * place + row] = pairs;
   }
 }
