@@ -9,6 +9,7 @@
 layout(local_size_x_id = DEVICE_SUBGROUP_SIZE_ID) in;
 layout(push_constant, scalar) uniform Push { WideCollapseArgs args; };
 
+#define WIDE_COHERENT
 #include "lib/wide_tile.glsl"
 
 void main() {

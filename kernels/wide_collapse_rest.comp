@@ -7,6 +7,7 @@
 layout(local_size_x_id = DEVICE_SUBGROUP_SIZE_ID) in;
 layout(push_constant, scalar) uniform Push { WideCollapseRestArgs args; };
 
+#define WIDE_COHERENT volatile coherent
 #include "lib/wide_tile.glsl"
 
 void main() {

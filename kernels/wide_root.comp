@@ -6,6 +6,7 @@
 layout(local_size_x = 1) in;
 layout(push_constant, scalar) uniform Push { WideCollapseArgs args; };
 
+#define WIDE_COHERENT
 #include "lib/wide_groups.glsl"
 #include "lib/wide_collapse.glsl"
 
@@ -16,6 +17,8 @@ void main() {
     atomicOr(args.state.at[0].error_word, ERROR_WIDE_TOO_DEEP);
     return;
   }
-  enter(0u, 0u, 0u, 0u, 0u, 0u, normalisation_of(root.box_min, root.box_max));
+  uint child_count = enter(0u, 0u, 0u, normalisation_of(root.box_min, root.box_max));
+  args.tile_sums.at[0] = child_count;
+  args.block_sums.at[0] = child_count;
   args.levels.at[0] = planned_level(0u, 1u, 0u, 0u);
 }

@@ -8,6 +8,11 @@
 #include "lib/node_words.glsl"
 #include "lib/normalised.glsl"
 
+// Lists of children; the including kernel says whether it reads what it has written itself.
+layout(buffer_reference, scalar, buffer_reference_align = 16) WIDE_COHERENT buffer ChildListBuffer {
+  u64vec4 at[];
+};
+
 const float NEVER_OPENED = -1.0;  // below every area
 const float SMALL = -0.5;         // in the place of the area of a small child
 
@@ -33,43 +38,54 @@ Candidate candidate(uint index, Node node, float whole, Normalisation normalisat
   return Candidate(index, node.child, area);
 }
 
+Candidate candidates[WIDE_CHILDREN];
+
+// Opens the largest of `count` candidates, a constant, so that all indices are.
+void open_largest(const uint count, float whole, Normalisation normalisation) {
+  uint opened = 0u, pair = candidates[0].pair;
+  float largest = candidates[0].area;
+  [[unroll]] for (uint c = 1u; c < count; ++c) {
+    bool larger = candidates[c].area > largest;
+    largest = larger ? candidates[c].area : largest;
+    pair = larger ? candidates[c].pair : pair;
+    opened = larger ? c : opened;
+  }
+  if (largest > (count < WIDE_LEAST_CHILDREN ? NEVER_OPENED : SMALL)) {
+    Candidate left = candidate(pair, load_node(args.nodes, pair), whole, normalisation);
+    candidates[count] = candidate(pair + 1u, load_node(args.nodes, pair + 1u), whole, normalisation);
+    [[unroll]] for (uint c = 0u; c < count; ++c) {
+      if (c == opened) candidates[c] = left;
+    }
+  }
+}
+
 // Writes the children of a new wide node. Returns how many of them are wide nodes.
 uint collapse(uint entry, uint root, Normalisation normalisation) {
-  Candidate candidates[WIDE_CHILDREN];
   [[unroll]] for (uint c = 0u; c < WIDE_CHILDREN; ++c) candidates[c] = Candidate(WIDE_EMPTY, 0u, NEVER_OPENED);
   Node root_node = load_node(args.nodes, root);
   float whole = normalised_area(root_node, normalisation);
   candidates[0] = candidate(root, root_node, whole, normalisation);
-  [[unroll]] for (uint count = 1u; count < WIDE_CHILDREN; ++count) {
-    uint opened = 0u;
-    Candidate largest = candidates[0];
-    [[unroll]] for (uint c = 1u; c < count; ++c) {
-      if (candidates[c].area > largest.area) {
-        largest = candidates[c];
-        opened = c;
-      }
-    }
-    if (largest.area > (count < WIDE_LEAST_CHILDREN ? NEVER_OPENED : SMALL)) {
-      Candidate left = candidate(largest.pair, load_node(args.nodes, largest.pair), whole, normalisation);
-      candidates[count] = candidate(largest.pair + 1u, load_node(args.nodes, largest.pair + 1u), whole, normalisation);
-      [[unroll]] for (uint c = 0u; c < count; ++c) {
-        if (c == opened) candidates[c] = left;
-      }
-    }
-  }
+  open_largest(1u, whole, normalisation);
+  open_largest(2u, whole, normalisation);
+  open_largest(3u, whole, normalisation);
+  open_largest(4u, whole, normalisation);
+  open_largest(5u, whole, normalisation);
+  open_largest(6u, whole, normalisation);
+  open_largest(7u, whole, normalisation);
+  u64vec4 pairs;
   uint child_count = 0u;
-  [[unroll]] for (uint c = 0u; c < WIDE_CHILDREN; ++c) {
-    args.children.at[entry * WIDE_CHILDREN + c] = candidates[c].child;
-    child_count += (candidates[c].child & WIDE_LEAF) == 0u ? 1u : 0u;
+  [[unroll]] for (uint c = 0u; c < WIDE_CHILDREN; c += 2u) {
+    uint even = candidates[c].child, odd = candidates[c + 1u].child;
+    pairs[c / 2u] = packUint2x32(uvec2(even, odd));
+    child_count += 2u - (even >> 31) - (odd >> 31);
   }
+  ChildListBuffer(args.children).at[entry] = pairs;
   return child_count;
 }
 
-// A new wide node, the index-th of its level; `tile` and `block` are its level's first ones.
-void enter(uint entry, uint root, uint parent, uint index, uint tile, uint block, Normalisation normalisation) {
+// A new wide node. Returns how many of its children are wide nodes.
+uint enter(uint entry, uint root, uint parent, Normalisation normalisation) {
   uint child_count = collapse(entry, root, normalisation);
   args.entries.at[entry] = WideEntry(root, parent, 0u, child_count);
-  // Partners: these lines, for the other nodes of the tile and the block. Sums do not depend on their order.
-  atomicAdd(args.tile_sums.at[tile + index / WIDE_TILE], child_count);
-  atomicAdd(args.block_sums.at[block + index / (WIDE_TILE * WIDE_BLOCK)], child_count);
+  return child_count;
 }
