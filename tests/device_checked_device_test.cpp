@@ -42,8 +42,8 @@ TEST_F(CheckedDeviceTest, BuildsAsItIsToldOrAsTheCheckSays) {
 
 TEST_F(CheckedDeviceTest, WalksTheWideTreeWhereItPays) {
   CheckedDevice device = opened({.variants = "trace=wide-single"});
-  EXPECT_EQ(device.picture_options(picture(10, 10), 99).walk, Walk::wide_single);
-  EXPECT_EQ(device.picture_options(picture(10, 10), 100).walk, Walk::binary);
+  EXPECT_EQ(device.picture_options(picture(10, 10), 399).walk, Walk::wide_single);
+  EXPECT_EQ(device.picture_options(picture(10, 10), 400).walk, Walk::binary);
   TraceOptions fast = picture(10, 10);
   fast.box_test = BOX_FAST;
   EXPECT_EQ(device.picture_options(fast, 1).walk, Walk::binary);
