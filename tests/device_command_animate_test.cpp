@@ -1,4 +1,5 @@
 // `coppice animate` as scripts and a farm's scheduler call it.
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -174,8 +175,9 @@ TEST_F(CommandAnimate, MovesInstances) {
   EXPECT_NE(flat.err.find("--tree binary"), std::string::npos) << flat.err;
   EXPECT_FALSE(flattened.contains("instances"));
   for (const json& hash : flattened["frame_hashes"]) EXPECT_EQ(hash, still["image_hash"]);
-  for (const char* const update : {"refit", "auto"})
-    expect_refused("animate " + swarm + "--update " + update, 1, std::string("--update ") + update);
+  const json refits = json_of(run("animate " + swarm + "--frames 4 --fps 2 --update refit --json -"));
+  EXPECT_EQ(refits["refits"], 3);
+  EXPECT_EQ(refits["frame_hashes"], report["frame_hashes"]);
   const Outcome text = run("animate " + swarm + "--frames 1");
   EXPECT_NE(text.out.find("in 200 instances of meshes"), std::string::npos) << text.out;
 }
@@ -199,6 +201,47 @@ TEST_F(CommandAnimate, MovesTheObjectsOfASceneFile) {
   EXPECT_EQ(report["frames_per_second"], 1.0);
   EXPECT_EQ(report["frame_hashes"][0], still["image_hash"]);
   EXPECT_NE(report["frame_hashes"][1], report["frame_hashes"][2]);
+}
+
+// Objects that keyframes move and meshes that deform stay instances; as triangles of one level they move, too.
+TEST_F(CommandAnimate, MovesAndDeformsInstances) {
+  write("herd.json", R"({"meshes": {"m": {"built_in": "hard:sphere:200"}, "g": {"built_in": "terrain:200"}},
+    "camera": {"position": [0, 3, 40], "target": [0, 0, 0]}, "frames_per_second": 2,
+    "objects": [{"mesh": "m", "keyframes": {"translation": {"times": [0, 4], "values": [[5, 0, 0], [-5, 2, 0]]}}},
+                {"mesh": "m", "scale": [-1, 2, 1]},
+                {"mesh": "m", "translation": [-4, 3, 1], "deform": {"kind": "twist"}},
+                {"mesh": "g", "translation": [0, -8, 0], "deform": {"kind": "wave"}}], "instances": {}})");
+  const std::string herd = "herd.json --size 48x32 ", frames = "--frames 3 --json - ";
+  const json report = json_of(run("animate " + herd + frames + "--validate --kernels"));
+  EXPECT_EQ(report["instances"], 4);
+  EXPECT_EQ(report["tree"], "binary");
+  EXPECT_EQ(report["rebuilds"], 3);
+  const json hashes = report["frame_hashes"];
+  EXPECT_NE(hashes[1], hashes[2]);
+  std::map<std::string, json> kernels;
+  for (const json& kernel : report["kernels"]) kernels[kernel["name"]] = kernel;
+  EXPECT_EQ(kernels["hploc_build"]["dispatches"], 3) << "two meshes and the instances";
+  EXPECT_TRUE(kernels.contains("vertex_deform") && kernels.contains("trace_instances"));
+  const json refits = json_of(run("animate " + herd + frames + "--update refit"));
+  EXPECT_EQ(refits["refits"], 2);
+  EXPECT_EQ(refits["frame_hashes"], hashes);
+  const Outcome flat = run("animate " + herd + frames + "--tree wide");
+  const json flattened = json_of(flat);
+  EXPECT_EQ(flat.err, "");
+  EXPECT_FALSE(flattened.contains("instances"));
+  EXPECT_NE(flattened["frame_hashes"][1], flattened["frame_hashes"][2]);
+}
+
+TEST_F(CommandAnimate, BuildsNothingWhereOnlyTheCameraMoves) {
+  write("round.json", R"({"meshes": {"m": {"built_in": "hard:sphere:200"}}, "instances": {},
+    "camera": {"position": [0, 3, 40], "target": [0, 0, 0],
+               "keyframes": {"position": {"times": [0, 4], "values": [[0, 3, 40], [40, 3, 0]]}}},
+    "objects": [{"mesh": "m"}, {"mesh": "m", "translation": [9, 0, 0]}]})");
+  const json report = json_of(run("animate round.json --size 48x32 --frames 3 --fps 1 --json - --kernels"));
+  EXPECT_EQ(report["rebuilds"], 0);
+  EXPECT_EQ(report["refits"], 0);
+  EXPECT_NE(report["frame_hashes"][0], report["frame_hashes"][1]);
+  for (const json& kernel : report["kernels"]) EXPECT_NE(kernel["name"], "hploc_build");
 }
 
 TEST_F(CommandAnimate, RefusesWhatItCannotDo) {

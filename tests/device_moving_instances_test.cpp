@@ -12,20 +12,9 @@
 namespace coppice {
 namespace {
 
-// The scene with its instances where the last frame had them.
-Scene as_moved(Scene scene, MovingFrames& frames) {
-  const auto transforms = frames.executor().read(frames.plan().levels->plan.transforms);
-  for (std::size_t i = 0; i < transforms.size(); ++i) {
-    const InstanceTransform& t = transforms[i];
-    scene.instances[i].transform = {t.row_x.x, t.row_y.x, t.row_z.x, t.row_x.y, t.row_y.y, t.row_z.y,
-                                    t.row_x.z, t.row_y.z, t.row_z.z, t.move_x,  t.move_y,  t.move_z};
-  }
-  return scene;
-}
+using MovingSwarm = DeviceTest;
 
-using MovingInstances = DeviceTest;
-
-TEST_F(MovingInstances, AreThePicturesOfTheFlattenedScene) {
+TEST_F(MovingSwarm, AreThePicturesOfTheFlattenedScene) {
   const Scene scene = make_instances(500);
   for (const DeviceBuilder builder : {DeviceBuilder::ploc, DeviceBuilder::hploc, DeviceBuilder::lbvh}) {
     const MovingOptions options = moving_options(Walk::binary, builder);
@@ -45,7 +34,7 @@ TEST_F(MovingInstances, AreThePicturesOfTheFlattenedScene) {
   }
 }
 
-TEST_F(MovingInstances, AreInLockstepWithTheTwins) {
+TEST_F(MovingSwarm, AreInLockstepWithTheTwins) {
   const Scene scene = make_instances(100);
   const SceneArrays arrays = scene_arrays(scene);
   const MovingOptions options = moving_options();
@@ -73,7 +62,7 @@ TEST_F(MovingInstances, AreInLockstepWithTheTwins) {
   }
 }
 
-TEST_F(MovingInstances, AreTheSameBitsInAnyOrderAndWithAnyNumberUnderWay) {
+TEST_F(MovingSwarm, AreTheSameBitsInAnyOrderAndWithAnyNumberUnderWay) {
   const Scene scene = make_instances(60);
   std::vector<std::uint64_t> hashes[2];
   for (const std::uint32_t under_way : {1u, 3u}) {
@@ -105,7 +94,7 @@ TEST_F(MovingInstances, AreTheSameBitsInAnyOrderAndWithAnyNumberUnderWay) {
 }
 
 // A frame has one build, that over the instances.
-TEST_F(MovingInstances, LeaveTheMeshesTreesAsTheyAre) {
+TEST_F(MovingSwarm, LeaveTheMeshesTreesAsTheyAre) {
   const Scene scene = make_instances(30);
   MovingOptions options = moving_options();
   options.tree_cost = true;
@@ -126,7 +115,7 @@ TEST_F(MovingInstances, LeaveTheMeshesTreesAsTheyAre) {
   EXPECT_EQ(tree_hash(before), tree_hash(after));
 }
 
-TEST_F(MovingInstances, StandStillWithoutASwarm) {
+TEST_F(MovingSwarm, StandStillWithoutASwarm) {
   Scene scene = make_instances(40);
   const MovingOptions options = moving_options();
   const Film film = film_of(scene, options);
@@ -136,23 +125,24 @@ TEST_F(MovingInstances, StandStillWithoutASwarm) {
   const std::vector<uint> first = frame_at(swarm, 0, film);
   EXPECT_EQ(frame_at(still, 0, film), first);
   EXPECT_EQ(frame_at(still, 5, film), first);
+  for (const Step& step : still.steps())
+    EXPECT_NE(stage_of(step), &stages::hploc_build) << "nothing is built";
+  still.submit(6, film);
+  const MovingFrame kept = still.take();
+  EXPECT_TRUE(kept.kept && !kept.rebuilt);
+  EXPECT_EQ(kept.state.active_count, 40u);
   EXPECT_NE(frame_at(swarm, 5, film), first);
 }
 
-TEST_F(MovingInstances, HaveNoRefitsAndNoWideTree) {
+TEST_F(MovingSwarm, HasNoWideTree) {
   const Scene scene = make_instances(3);
   MovingOptions options = moving_options();
-  for (const Update update : {Update::refit, Update::automatic}) {
-    options.update = update;
-    EXPECT_THROW(MovingFrames(test_device(), scene, options), std::invalid_argument);
-  }
-  options = moving_options();
   options.trace.walk = Walk::wide_packets;
   EXPECT_THROW(MovingFrames(test_device(), scene, options), std::invalid_argument);
 }
 
 // LikeAGpu is in the names of what runs on the reference driver only.
-TEST_F(MovingInstances, LikeAGpuGoThroughMappedMemory) {
+TEST_F(MovingSwarm, LikeAGpuGoThroughMappedMemory) {
   Device like_a_gpu({"", true, true});
   const Scene scene = make_instances(50);
   const MovingOptions options = moving_options();

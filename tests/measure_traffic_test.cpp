@@ -110,7 +110,7 @@ TEST(Traffic, OfARefit) {
 TEST(Traffic, OfTwoLevels) {
   Layout layout;
   constexpr std::uint32_t meshes[] = {100, 7};
-  const InstancePlan plan = plan_instances(layout, meshes, 1000, {});
+  InstancePlan plan = plan_instances(layout, meshes, 1000, {});
   const RaySlots rays{layout.add<Ray>("rays", 100),
                       layout.add<Hit>("hits", 100),
                       layout.add<TraceCounters>("counters", 1),
@@ -133,6 +133,14 @@ TEST(Traffic, OfTwoLevels) {
   EXPECT_EQ(bytes["box_bounds"], 48000u);
   EXPECT_EQ(bytes["trace_instances"], 100u * 68 + 400 * 64 + 50 * 148);
   EXPECT_EQ(bytes["place_hits"], 100u * 60 + 50 * 96);
+  const TopRefit refit = plan_top_refit(layout, plan, 100);
+  Chain again(no_addresses);
+  append_top_refit(again, plan, refit);
+  for (const Step& step : again.steps()) {
+    if (stage_of(step) == &stages::instance_boxes) {
+      EXPECT_EQ(modelled_bytes(step, counts), 176000u) << "and the triangles that are refitted";
+    }
+  }
 }
 
 // 64 triangles under 9 wide nodes: the root has 8, which have 8 leaves each.

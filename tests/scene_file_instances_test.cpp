@@ -84,24 +84,105 @@ TEST(SceneFileInstances, MayBeFarAwayAndLie) {
   }
 }
 
-TEST(SceneFileInstances, MoveTogetherOrNotAtAll) {
+json still_file() {
+  json file = instanced_file();
+  file["instances"] = json::object();
+  return file;
+}
+
+const json track = {{"translation", {{"times", {0, 4}}, {"values", {{1, 1, 1}, {5, 1, 1}}}}}};
+
+// Those below a node that has keyframes too, and no others.
+TEST(SceneFileInstances, MoveByKeyframes) {
+  json file = still_file();
+  file["objects"][0]["keyframes"] = track;
+  file["objects"][3]["keyframes"] = track;  // "above"
+  file["up"] = "z";
+  const Scene scene = read_scene(file);
+  ASSERT_TRUE(scene.motion);
+  EXPECT_FALSE(scene.swarm);
+  EXPECT_EQ(scene.motion->moved_instances, (std::vector<std::uint32_t>{0, 3}));
+  EXPECT_EQ(scene.motion->duration_seconds, 4);
+  EXPECT_TRUE(scene.motion->rest.empty());
+  const std::vector<glm::mat4x3> start = instances_at(*scene.motion, 0),
+                                 later = instances_at(*scene.motion, 2);
+  ASSERT_EQ(start.size(), 2u);
+  EXPECT_EQ(start[0], scene.instances[0].transform);
+  EXPECT_EQ(start[1], scene.instances[3].transform);
+  EXPECT_EQ(later[0][3], (glm::vec3{3, 1, -1})) << "x goes on, and z is up";
+  EXPECT_EQ(standing_at(scene, 2).instances[3].transform, later[1]);
+  EXPECT_EQ(standing_at(scene, 2).instances[1].transform, scene.instances[1].transform);
+  EXPECT_FALSE(flattened(scene).motion);
+  // Without "instances" the same objects are where these are.
+  file.erase("instances");
+  const Scene plain = read_scene(file);
+  const std::vector<glm::vec3> positions = positions_at(*plain.motion, 3),
+                               mine = flattened(standing_at(scene, 3)).positions;
+  ASSERT_EQ(positions.size(), mine.size());
+  for (std::size_t v = 0; v < mine.size(); ++v) EXPECT_LT(glm::length(positions[v] - mine[v]), 1e-5f) << v;
+}
+
+// A mesh is kept once with each of its deformations, and moves in its own space.
+TEST(SceneFileInstances, MayBeOfMeshesThatMove) {
+  json file = still_file();
+  file["objects"][0]["deform"] = {{"kind", "wave"}, {"seconds", 3}};
+  file["objects"][4]["deform"] = {{"kind", "wave"}, {"seconds", 3}};
+  file["objects"][1]["mesh"] = "walk";
+  file["objects"].push_back({{"mesh", "t"}});
+  const Scene scene = read_scene(file);
+  ASSERT_TRUE(scene.motion);
+  EXPECT_TRUE(scene.motion->moved_instances.empty());
+  EXPECT_EQ(scene.motion->duration_seconds, 3);
+  ASSERT_EQ(scene.meshes.size(), 4u) << "waves, walk, t in red, t";
+  EXPECT_EQ(scene.instances[0].mesh, scene.instances[3].mesh);
+  const InstancedMesh &waves = scene.meshes[0], &walk = scene.meshes[1];
+  ASSERT_TRUE(waves.motion && walk.motion);
+  EXPECT_FALSE(scene.meshes[2].motion || scene.meshes[3].motion);
+  EXPECT_EQ(walk.first_vertex, 3u);
+  const Scene later = standing_at(scene, 1);
+  EXPECT_EQ(later.positions[3], scene.positions[3] + glm::vec3(1, 0, 0));
+  EXPECT_NE(later.positions[1], scene.positions[1]);
+  EXPECT_EQ(later.positions[6], scene.positions[6]) << "a mesh that stands still";
+  ASSERT_TRUE(scene.camera) << "that of the mesh that walks";
+  file["duration"] = 9;
+  file["instances"] = {{"swarm", json::object()}};
+  EXPECT_EQ(read_scene(file).motion->duration_seconds, 9);
+  EXPECT_TRUE(read_scene(file).swarm);
+}
+
+// Far from the origin too: what is subtracted from instances is from the camera.
+TEST(SceneFileInstances, ACameraMayMoveAlone) {
+  json file = still_file();
+  for (json& object : file["objects"]) {
+    if (object.contains("matrix")) {
+      object["matrix"][0][3] = 4000004.0;
+    } else if (!object.contains("parent")) {
+      object["translation"] = {4e6, 2, 3};
+    }
+  }
+  file["camera"] = {
+      {"position", {4e6, 0, 9}},
+      {"target", {4e6, 0, 0}},
+      {"keyframes", {{"position", {{"times", {0, 2}}, {"values", {{4e6, 0, 9}, {4000002.0, 0, 9}}}}}}}};
+  const Scene scene = read_scene(file);
+  ASSERT_TRUE(scene.motion);
+  EXPECT_TRUE(scene.motion->moved_instances.empty());
+  EXPECT_EQ(scene.motion->duration_seconds, 2);
+  const std::optional<Camera> start = pose_at(*scene.motion, 0).camera,
+                              later = pose_at(*scene.motion, 2).camera;
+  ASSERT_TRUE(start && later);
+  EXPECT_EQ(start->position, scene.camera->position);
+  EXPECT_EQ(later->position, scene.camera->position + glm::vec3(2, 0, 0));
+}
+
+TEST(SceneFileInstances, AreRefusedByName) {
   const auto error_with = [](const char* pointer, const json& value) {
     json file = instanced_file();
     file[json::json_pointer(pointer)] = value;
     return scene_error_of(file);
   };
-  const json track = {{"translation", {{"times", {0}}, {"values", {{1, 1, 1}}}}}};
   EXPECT_EQ(error_with("/objects/2/keyframes", track),
-            "s.json: /objects/2/keyframes: does not go with \"instances\"");
-  EXPECT_EQ(error_with("/objects/0/deform", {{"kind", "wave"}}),
-            "s.json: /objects/0/deform: does not go with \"instances\"");
-  EXPECT_EQ(error_with("/duration", 4), "s.json: /duration: does not go with \"instances\"");
-  EXPECT_EQ(error_with("/camera", {{"position", {0, 0, 9}},
-                                   {"target", {0, 0, 0}},
-                                   {"keyframes", {{"fov", {{"times", {0}}, {"values", {40}}}}}}}),
-            "s.json: /camera/keyframes: does not go with \"instances\"");
-  EXPECT_EQ(error_with("/objects/1/mesh", "walk"),
-            "s.json: /objects/1/mesh: \"walk\" moves, with \"instances\" none may");
+            "s.json: /objects/2/keyframes: does not go with a \"swarm\"");
   EXPECT_EQ(error_with("/objects/2/mesh", "x"),
             "s.json: /objects/2/mesh: no mesh 'x', there are: q, t, walk");
   EXPECT_EQ(error_with("/objects/2/material", "x"),

@@ -9,15 +9,11 @@
 #include "scene/instances.h"
 #include "scene/scene_source.h"
 #include "support/instances.h"
+#include "support/moving_meshes.h"
 #include "support/triangles.h"
 
 namespace coppice {
 namespace {
-
-glm::mat4x3 columns_of(const InstanceTransform& t) {
-  return {t.row_x.x, t.row_y.x, t.row_z.x, t.row_x.y, t.row_y.y, t.row_z.y,
-          t.row_x.z, t.row_y.z, t.row_z.z, t.move_x,  t.move_y,  t.move_z};
-}
 
 Scene swarm_by_random_transforms(std::uint32_t count, float exponent) {
   Scene scene = make_instances(count);
@@ -65,6 +61,39 @@ TEST(SceneInstances, StandUpAndComeIntoRangeBeforeOrAfter) {
       EXPECT_TRUE(same_corners(triangles_of(flattened(scene)), triangles_of(after))) << up << scale;
     }
   }
+}
+
+// At second 0 keyframes have them where the scene has them, however it was turned and scaled; vertices of
+// meshes stay in the space of the mesh.
+TEST(SceneInstances, ThatMoveStandUpAndComeIntoRangeToo) {
+  for (const std::string_view up : {"y", "-x", "z"}) {
+    for (const double scale : {0x1p-60, 1.0, 0x1p50}) {
+      InstanceComposition composition = meshes_that_move(2);
+      for (const std::uint32_t root : {0u, 1u, 3u}) {
+        composition.nodes.nodes[root].scale *= scale;
+        composition.nodes.nodes[root].translation *= scale;
+      }
+      for (double& value : composition.nodes.tracks[0].keyframes.values) value *= scale;
+      Scene scene = compose_instances(composition);
+      const std::vector<glm::vec3> positions = scene.positions;
+      stand_up(scene, up);
+      bring_into_range(scene);
+      const std::vector<glm::mat4x3> start = instances_at(*scene.motion, 0);
+      const std::vector<std::uint32_t>& moved = scene.motion->moved_instances;
+      ASSERT_EQ(moved, (std::vector<std::uint32_t>{1, 3}));
+      for (std::size_t i = 0; i < moved.size(); ++i)
+        EXPECT_EQ(start[i], scene.instances[moved[i]].transform) << up << scale;
+      EXPECT_EQ(scene.positions, positions);
+      EXPECT_EQ(standing_at(scene, 0).positions, positions);
+    }
+  }
+}
+
+// A camera that the scene does not give sees them at every time.
+TEST(SceneInstances, CamerasSeeWhereTheyGo) {
+  Scene scene = compose_instances(meshes_that_move(2));
+  const Camera moving = frame_scene(scene, 1.5f), still = frame_scene(standing_at(scene, 0), 1.5f);
+  EXPECT_NE(moving.target, still.target);
 }
 
 TEST(SceneInstances, AsManyAsWereAskedFor) {

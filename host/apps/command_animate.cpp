@@ -121,9 +121,6 @@ class AnimateCommand : public Command {
     scene_.keep_instances = traces_instances();
     const Scene scene = open_scene_of(scene_, builder_, device_, true);
     if (!scene.motion && !scene.swarm) print_note(why_still(scene));
-    if (!scene.instances.empty() && update_ != Update::rebuild)
-      throw InputError("--update " + std::string(word_of_update(update_)) + ": scene '" + scene.name +
-                       "' has instances, whose tree is built anew every frame (--update rebuild)");
     AnimateRuns runs{.builder = builder_, .trace = picture_.trace, .camera = picture_.camera};
     runs.update = update_;
     runs.tree_cost = tree_cost_ || !files.plot.empty() || !files.csv.empty();

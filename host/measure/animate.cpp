@@ -45,7 +45,7 @@ class FrameLoop {
   void take() {
     const MovingFrame frame = frames_.take();
     report_.host_waits += frame.submits;
-    ++(frame.rebuilt ? report_.rebuilds : report_.refits);
+    if (!frame.kept) ++(frame.rebuilt ? report_.rebuilds : report_.refits);
     const auto now = AnimateClock::now();
     const std::uint32_t number = under_way_.front();
     under_way_.pop_front();
@@ -66,27 +66,29 @@ class FrameLoop {
   AnimateClock::time_point last_done_;
 };
 
-// The kernels of the last frame, built, each with a time of its own. First all at once: which of them have
-// work is read from what a run has left, and that of another frame, or of a refit, may have had fewer rounds
-// or levels.
+// The kernels of the last frame, built, each with a time of its own; tree by tree. First each part at once:
+// which of them have work is read from what a run has left, and that of another tree or frame, or of a refit,
+// may have had fewer rounds or levels.
 void split_kernels(CheckedDevice& device, MovingFrames& frames, const AnimateRuns& runs,
                    AnimateReport& report) {
-  const std::vector<Step> steps = frames.steps();
-  frames.executor().record(steps).submit_and_wait(piece_limit_seconds);
-  const KernelSplit split = split_time(frames.executor(), steps, piece_limit_seconds);
   const FramePlan& plan = frames.plan();
-  RunCounts counts = counts_of_build(frames.executor(), *plan.build, plan.wide ? &*plan.wide : nullptr);
-  const RunCounts trace = counts_of_trace(frames.executor().read(plan.trace.counters)[0]);
-  counts.rays = trace.rays;
-  counts.hits = trace.hits;
-  counts.steps = trace.steps;
   KernelSums sums;
-  sums.add(split.steps, split.times, counts);
-  report.kernels = kernel_table(sums, find_copy_limit(device, sums.largest_dispatch()), split.times.total_ms);
-  if (runs.trace_events.empty()) return;
   TraceEvents events;
-  events.add(split);
-  events.write(runs.trace_events, device);
+  double total_ms = 0;
+  for (const MovingFrames::Part& part : frames.parts()) {
+    frames.executor().record(part.steps).submit_and_wait(piece_limit_seconds);
+    const KernelSplit split = split_time(frames.executor(), part.steps, piece_limit_seconds);
+    RunCounts counts = counts_of_build(frames.executor(), part.build, plan.wide ? &*plan.wide : nullptr);
+    const RunCounts trace = counts_of_trace(frames.executor().read(plan.trace.counters)[0]);
+    counts.rays = trace.rays;
+    counts.hits = trace.hits;
+    counts.steps = trace.steps;
+    sums.add(split.steps, split.times, counts);
+    events.add(split);
+    total_ms += split.times.total_ms;
+  }
+  report.kernels = kernel_table(sums, find_copy_limit(device, sums.largest_dispatch()), total_ms);
+  if (!runs.trace_events.empty()) events.write(runs.trace_events, device);
 }
 
 }  // namespace

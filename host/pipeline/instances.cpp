@@ -21,6 +21,17 @@ Slot<T> part_of(const Slot<T>& slot, std::uint64_t first, std::uint64_t count) {
   return {{slot.place.block, slot.place.offset + first * sizeof(T)}, count};
 }
 
+void append_instance_boxes(Chain& chain, const InstancePlan& plan) {
+  const Address<Triangle> none{};
+  chain.clear(plan.mesh_height);
+  chain.run(stages::instance_boxes,
+            {chain.at(plan.transforms), chain.at(plan.mesh_index), chain.at(plan.meshes),
+             chain.at(plan.mesh_states), chain.at(plan.mesh_nodes), chain.at(plan.placed),
+             chain.at(plan.instance_boxes), plan.corners.count == 0 ? none : chain.at(plan.corners),
+             chain.at(plan.mesh_height), plan.instance_count, static_cast<uint>(plan.ranges.size())},
+            groups_of(plan.instance_count, INSTANCE_BOXES_GROUP));
+}
+
 }  // namespace
 
 InstancePlan plan_instances(Layout& layout, std::span<const std::uint32_t> mesh_triangles,
@@ -69,6 +80,20 @@ BuildPlan mesh_plan(const InstancePlan& plan, std::uint32_t mesh) {
   return build;
 }
 
+TopRefit plan_top_refit(Layout& layout, InstancePlan& plan, std::uint32_t max_turns) {
+  plan.corners = layout.add<Triangle>("instance_corners", plan.instance_count, Memory::tree);
+  TopRefit refit{plan.top, {}};
+  refit.tree.triangles = plan.corners;
+  refit.refit = plan_refit(layout, refit.tree, &plan.top, max_turns);
+  return refit;
+}
+
+RefitPlan plan_mesh_refit(Layout& layout, const InstancePlan& plan, std::uint32_t mesh,
+                          std::uint32_t max_turns) {
+  const BuildPlan build = mesh_plan(plan, mesh);
+  return plan_refit(layout, build, &build, max_turns, true);
+}
+
 void append_meshes(Chain& chain, const InstancePlan& plan, std::span<const std::uint32_t> meshes) {
   for (const std::uint32_t mesh : meshes) append_build(chain, mesh_plan(plan, mesh));
 }
@@ -83,15 +108,15 @@ void append_moves(Chain& chain, const InstancePlan& plan, const SwarmSlots& from
             groups_of(plan.instance_count, MOVE_INSTANCES_GROUP));
 }
 
-void append_top(Chain& chain, const InstancePlan& plan) {
-  chain.clear(plan.mesh_height);
-  chain.run(stages::instance_boxes,
-            {chain.at(plan.transforms), chain.at(plan.mesh_index), chain.at(plan.meshes),
-             chain.at(plan.mesh_states), chain.at(plan.mesh_nodes), chain.at(plan.placed),
-             chain.at(plan.instance_boxes), chain.at(plan.mesh_height), plan.instance_count,
-             static_cast<uint>(plan.ranges.size())},
-            groups_of(plan.instance_count, INSTANCE_BOXES_GROUP));
+void append_top(Chain& chain, const InstancePlan& plan, const TopRefit* refit) {
+  append_instance_boxes(chain, plan);
   append_build(chain, plan.top, {GivenBoxes{{chain.at(plan.instance_boxes).value}}, {}});
+  if (refit) append_refit_order(chain, refit->tree, refit->refit);
+}
+
+void append_top_refit(Chain& chain, const InstancePlan& plan, const TopRefit& refit) {
+  append_instance_boxes(chain, plan);
+  append_refit(chain, refit.tree, refit.refit);
 }
 
 void append_instance_hits(Chain& chain, const InstancePlan& plan, const RaySlots& slots,

@@ -6,6 +6,7 @@
 
 #include "interface/instances.h"
 #include "pipeline/build_plan.h"
+#include "pipeline/refit.h"
 #include "pipeline/trace_plan.h"
 
 namespace coppice {
@@ -28,6 +29,7 @@ struct InstancePlan {
   Slot<uint> mesh_index;               // in: one an instance
   Slot<PlacedInstance> placed;
   Slot<Aabb> instance_boxes;
+  Slot<Triangle> corners;  // that have these boxes; none unless the tree over the instances is refitted
   Slot<uint> mesh_height;
 
   BuildPlan scratch;  // of the largest build, one after the other
@@ -45,6 +47,18 @@ Slot<Triangle> triangles_of(const InstancePlan& plan, std::uint32_t mesh);
 // The build of one mesh, in its part of the slots of all.
 BuildPlan mesh_plan(const InstancePlan& plan, std::uint32_t mesh);
 
+// What refits of the tree over the instances need, planned behind all else: it goes by triangles that have
+// the instances' boxes. Throws LayoutError.
+struct TopRefit {
+  TreeSlots tree;  // over those triangles
+  RefitPlan refit;
+};
+TopRefit plan_top_refit(Layout& layout, InstancePlan& plan, std::uint32_t max_turns);
+
+// The same of a mesh's tree; it keeps its order while other meshes are built.
+RefitPlan plan_mesh_refit(Layout& layout, const InstancePlan& plan, std::uint32_t mesh,
+                          std::uint32_t max_turns);
+
 // The trees of these meshes; those of others stay as they are. So where meshes deform, only those that did
 // are built again, and append_top follows.
 void append_meshes(Chain& chain, const InstancePlan& plan, std::span<const std::uint32_t> meshes);
@@ -57,8 +71,13 @@ struct SwarmSlots {
 };
 void append_moves(Chain& chain, const InstancePlan& plan, const SwarmSlots& from, std::uint32_t seed);
 
-// From transforms, and the trees of the meshes, to the tree over the instances.
-void append_top(Chain& chain, const InstancePlan& plan);
+// From transforms, and the trees of the meshes, to the tree over the instances. `refit`: with the order of
+// its refits, if it will be refitted.
+void append_top(Chain& chain, const InstancePlan& plan, const TopRefit* refit = nullptr);
+
+// The same with the tree of the last append_top, refitted. An instance that was inactive then and is active
+// now is in no leaf, see append_refit.
+void append_top_refit(Chain& chain, const InstancePlan& plan, const TopRefit& refit);
 
 // The closest hits of the first `ray_count` rays, improved in place, with their instances. Of the options
 // max_turns and stack_entries matter: the stack takes the heights of both levels. Throws

@@ -69,7 +69,7 @@ void upload_frame(Executor& executor, const FramePlan& plan, const SceneArrays& 
   const InstancePlan& instances = plan.levels->plan;
   executor.upload(instances.meshes, std::span<const MeshRange>(instances.ranges));
   for (std::uint32_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
-    const auto [first, count] = scene.meshes[mesh];
+    const std::uint32_t first = scene.meshes[mesh].first_triangle, count = scene.meshes[mesh].triangle_count;
     const auto materials = std::span<const uint>(scene.material_index).subspan(first, count);
     Slot<uint> own{plan.levels->hits.mesh_materials.place, count};
     own.place.offset += sizeof(uint) * instances.ranges[mesh].first_triangle;

@@ -20,6 +20,13 @@ void append_copy_out(Chain& chain, const Slot<T>& from, const Slot<T>& to) {
             {1, 1, 1});
 }
 
+void check_meshes(std::span<const BuildState> states) {
+  for (const BuildState& state : states) {
+    const std::string errors = describe_error_word(state.error_word);
+    if (!errors.empty()) throw DeviceError("the tree of a mesh: " + errors);
+  }
+}
+
 MovingOptions for_scene(MovingOptions options, const Scene& scene) {
   options.trace.directional_light = scene.light.radiance != vec3(0);
   return options;
@@ -29,30 +36,37 @@ MovingOptions for_scene(MovingOptions options, const Scene& scene) {
 
 FramePlan MovingFrames::plan_all(MovingFrames& frames, const SceneArrays& arrays) {
   Layout& layout = frames.layout_;
-  const auto instances = static_cast<std::uint32_t>(arrays.mesh_index.size());
-  if (instances > 0 && frames.may_refit())
-    throw std::invalid_argument("the tree over instances is built anew every frame");
-  if (instances == 0) frames.vertices_ = plan_vertices(layout, frames.motion_, arrays.triangle_count());
-  if (frames.swarm_) frames.rest_ = layout.add<InstanceTransform>("rest", instances, Memory::source);
+  if (arrays.mesh_index.empty())
+    frames.vertices_ = plan_vertices(layout, frames.motion_, arrays.triangle_count());
   const FrameOptions options{.build = frames.options_.build, .trace = frames.options_.trace};
   FramePlan plan = plan_frame(layout, arrays, options);
-  if (frames.has_state())
-    frames.refit_ = plan_refit(layout, plan.tree, &*plan.build, frames.options_.trace.max_turns);
+  const std::uint32_t max_turns = frames.options_.trace.max_turns;
+  MovingInstances& moving = frames.instances_;
+  if (plan.levels) {
+    moving = plan_moving_instances(layout, frames.scene_, plan.levels->plan, frames.may_refit(), max_turns);
+    if (!moving.moves()) frames.options_.update = Update::rebuild;
+  }
+  if (moving.top) {
+    frames.refit_ = moving.top->refit;
+  } else if (frames.has_state()) {
+    frames.refit_ = plan_refit(layout, plan.tree, &*plan.build, max_turns);
+  }
   for (std::uint32_t i = 0; i < frames.options_.under_way; ++i) {
-    frames.slots_.push_back({{instances == 0 ? plan_motion(layout, frames.motion_) : MotionSlots{},
-                              layout.add_mapped<uint>("turn_told", frames.swarm_ ? 1 : 0),
-                              layout.add_mapped<Film>("film_told", 1)},
-                             {layout.add_mapped<uint>("image_left", plan.trace.image.count),
-                              layout.add_mapped<BuildState>("state_left", 1),
-                              layout.add_mapped<TraceCounters>("counters_left", 1),
-                              layout.add_mapped<RefitState>("refit_left", 1)}});
+    frames.slots_.push_back(
+        {{plan.levels ? MotionSlots{} : plan_motion(layout, frames.motion_),
+          plan_instances_told(layout, frames.scene_, moving), layout.add_mapped<Film>("film_told", 1)},
+         {layout.add_mapped<uint>("image_left", plan.trace.image.count),
+          layout.add_mapped<BuildState>("state_left", 1),
+          layout.add_mapped<TraceCounters>("counters_left", 1),
+          layout.add_mapped<RefitState>("refit_left", 1),
+          plan.levels ? plan_instances_left(layout, plan.levels->plan, moving) : InstancesLeft{}}});
   }
   return plan;
 }
 
 MovingFrames::MovingFrames(Device& device, const Scene& scene, const MovingOptions& options)
-    : motion_(motion_of(scene)),
-      swarm_(scene.instances.empty() ? std::nullopt : scene.swarm),
+    : scene_(scene),
+      motion_(motion_of(scene)),
       options_(for_scene(options, scene)),
       layout_(device.properties().max_block_bytes),
       plan_(plan_all(*this, scene_arrays(scene))),
@@ -61,7 +75,7 @@ MovingFrames::MovingFrames(Device& device, const Scene& scene, const MovingOptio
       chooser_(chooser()) {
   if (options_.under_way == 0) throw std::invalid_argument("no frame may be under way");
   upload_scene(scene);
-  build_meshes();
+  build_what_stands_still();
   const auto record = [&](const FrameSlots& slots, bool rebuilds) {
     Chain chain = executor_.chain();
     append(chain, slots, rebuilds);
@@ -76,23 +90,24 @@ MovingFrames::MovingFrames(Device& device, const Scene& scene, const MovingOptio
 void MovingFrames::upload_scene(const Scene& scene) {
   const SceneArrays arrays = scene_arrays(scene);
   upload_frame(executor_, plan_, arrays, Film{});
-  if (swarm_) executor_.upload(rest_, std::span<const InstanceTransform>(arrays.transforms));
+  upload_moving_instances(executor_, instances_, scene, arrays);
   if (!plan_.levels) upload_vertices(executor_, vertices_, motion_, std::span<const uvec3>(scene.indices));
 }
 
-// Each in a submit of its own, as nobody waits for a frame yet.
-void MovingFrames::build_meshes() {
+// Each in a submit of its own, as nobody waits for a frame yet. Where nothing moves, the tree over the
+// instances too.
+void MovingFrames::build_what_stands_still() {
   if (!plan_.levels) return;
   const InstancePlan& instances = plan_.levels->plan;
-  for (std::uint32_t mesh = 0; mesh < instances.ranges.size(); ++mesh) {
+  const auto submit = [&](const auto& append) {
     Chain chain = executor_.chain();
-    append_meshes(chain, instances, {&mesh, 1});
+    append(chain);
     executor_.record(chain.steps()).submit_and_wait(piece_limit_seconds);
-  }
-  for (const BuildState& state : executor_.read(instances.mesh_states)) {
-    const std::string errors = describe_error_word(state.error_word);
-    if (!errors.empty()) throw DeviceError("the tree of a mesh: " + errors);
-  }
+  };
+  for (const std::uint32_t mesh : meshes_that_stand_still(scene_))
+    submit([&](Chain& chain) { append_meshes(chain, instances, {&mesh, 1}); });
+  check_meshes(executor_.read(instances.mesh_states));
+  if (!instances_.moves()) submit([&](Chain& chain) { append_top(chain, instances); });
 }
 
 // The device has to be done with what it is given.
@@ -107,13 +122,13 @@ MovingFrames::~MovingFrames() {
 }
 
 void MovingFrames::append_places(Chain& chain, const Told& told) const {
-  if (!plan_.levels) append_vertices(chain, vertices_, told.motion, motion_);
-  if (swarm_) append_moves(chain, plan_.levels->plan, {rest_, told.turn}, swarm_->seed);
+  if (!plan_.levels) return append_vertices(chain, vertices_, told.motion, motion_);
+  append_instance_places(chain, scene_, plan_.levels->plan, instances_, told.instances);
 }
 
 void MovingFrames::append_tree(Chain& chain, bool rebuilds) const {
   if (plan_.levels) {
-    append_top(chain, plan_.levels->plan);
+    append_instance_trees(chain, plan_.levels->plan, instances_, rebuilds);
   } else {
     append_moving_tree(chain, vertices_, plan_, may_refit() ? &refit_ : nullptr, rebuilds);
   }
@@ -131,6 +146,10 @@ void MovingFrames::append(Chain& chain, const FrameSlots& slots, bool rebuilds) 
   append_places(chain, slots.told);
   chain.mark();
   append_update(chain, rebuilds);
+  append_picture(chain, slots);
+}
+
+void MovingFrames::append_picture(Chain& chain, const FrameSlots& slots) const {
   TracePlan trace = plan_.trace;
   trace.film = slots.told.film;
   trace.image = slots.left.image;
@@ -139,6 +158,7 @@ void MovingFrames::append(Chain& chain, const FrameSlots& slots, bool rebuilds) 
   append_copy_out(chain, plan_.tree.state, slots.left.state);
   append_copy_out(chain, trace.counters, slots.left.counters);
   if (has_state()) append_copy_out(chain, refit_.state, slots.left.refit);
+  if (plan_.levels) append_instances_left(chain, plan_.levels->plan, instances_, slots.left.instances);
 }
 
 std::vector<Step> MovingFrames::steps(bool rebuilds) const {
@@ -147,13 +167,29 @@ std::vector<Step> MovingFrames::steps(bool rebuilds) const {
   return std::move(chain.steps());
 }
 
+std::vector<MovingFrames::Part> MovingFrames::parts() const {
+  if (instances_.meshes.empty()) return {{steps(), *plan_.build}};
+  const InstancePlan& plan = plan_.levels->plan;
+  std::vector<Part> parts;
+  Chain chain = executor_.chain();
+  append_places(chain, slots_.front().told);
+  for (const MovingInstances::Mesh& mesh : instances_.meshes) {
+    append_mesh_tree(chain, plan, mesh, true, may_refit());
+    parts.push_back({std::move(chain.steps()), mesh_plan(plan, mesh.mesh)});
+    chain = executor_.chain();
+  }
+  append_top_tree(chain, plan, instances_, true);
+  if (options_.tree_cost) append_tree_cost(chain, plan_.tree, refit_);
+  append_picture(chain, slots_.front());
+  parts.push_back({std::move(chain.steps()), *plan_.build});
+  return parts;
+}
+
 void MovingFrames::tell(const Told& told, double seconds, const Film& film) {
   executor_.upload(told.film, std::span<const Film>(&film, 1));
+  tell_instances(executor_, told.instances, scene_, instances_, seconds);
   if (!plan_.levels)
     upload_step(executor_, told.motion, motion_step(motion_, pose_at(motion_, seconds), seconds));
-  if (!swarm_) return;
-  const uint turn = turn_at(*swarm_, seconds);
-  executor_.upload(told.turn, std::span<const uint>(&turn, 1));
 }
 
 UpdateChooser MovingFrames::chooser() const {
@@ -168,6 +204,14 @@ void MovingFrames::submit(double seconds, const Film& film) {
   (rebuilds ? builds_ : refits_)[next_slot_].submit();
   waiting_.push_back({next_slot_, seconds, rebuilds});
   next_slot_ = (next_slot_ + 1) % slots_.size();
+}
+
+// Of the trees of the frame, all together.
+std::uint32_t MovingFrames::appeared(const Left& left) {
+  const Slot<RefitState>& meshes = left.instances.mesh_refits;
+  std::uint32_t count = mapped(left.refit)->appeared_count;
+  for (std::uint64_t i = 0; i < meshes.count; ++i) count += mapped(meshes)[i].appeared_count;
+  return count;
 }
 
 template <class T>
@@ -203,7 +247,7 @@ MovingFrame MovingFrames::take() {
     return outcome(times, left);
   };
   MovingFrame frame = wait();
-  if (!waiting.rebuilds && mapped(left.refit)->appeared_count > 0) {
+  if (!waiting.rebuilds && appeared(left) > 0) {
     waiting.rebuilds = true;
     builds_[waiting.slot].submit();
     const double first_wall_ms = frame.wall_ms;
@@ -211,11 +255,14 @@ MovingFrame MovingFrames::take() {
     frame.wall_ms += first_wall_ms;
     frame.submits = 2;
   }
-  frame.rebuilt = waiting.rebuilds;
+  frame.kept = plan_.levels && !instances_.moves();
+  frame.rebuilt = waiting.rebuilds && !frame.kept;
   frame.seconds = waiting.seconds;
   const std::string errors = describe_error_word(frame.state.error_word);
   if (!errors.empty())
     throw DeviceError("the frame at second " + std::to_string(frame.seconds) + ": " + errors);
+  const Slot<BuildState>& meshes = left.instances.mesh_states;
+  if (meshes.count > 0) check_meshes({mapped(meshes), meshes.count});
   chooser_.note({frame.rebuilt, frame.submits > 1, frame.update_ms + frame.wide_ms, frame.trace_ms,
                  frame.counts.steps});
   return frame;

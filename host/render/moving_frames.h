@@ -8,6 +8,7 @@
 
 #include "pipeline/refit.h"
 #include "render/frame.h"
+#include "render/moving_instances.h"
 #include "render/moving_vertices.h"
 #include "render/update_chooser.h"
 #include "stages/gpu_executor.h"
@@ -31,7 +32,8 @@ struct MovingFrame {
   double trace_ms = 0;        // camera rays to picture
   double total_ms = 0;        // of the submit; of the host's clock where the device has none
   double wall_ms = 0;         // from the submit until the host knew
-  bool rebuilt = true;        // else refitted
+  bool rebuilt = true;        // else refitted, or kept
+  bool kept = false;          // nothing of a scene with instances moves: its trees are those it began with
   std::uint32_t submits = 1;  // 2: triangles appeared that the tree of a refit has no leaves for
   TraceCounts counts;
   BuildState state;
@@ -40,16 +42,16 @@ struct MovingFrame {
 };
 
 // A scene's frames, each in one submit: vertices to where they are, triangles, tree, picture. Of a scene with
-// instances, whose meshes stand still and get their trees before the first frame: transforms of a swarm,
-// boxes and the tree over the instances, picture. The tree is that of the frame, built, or that of the last
-// build, refitted; the picture is the same (with the watertight and the robust test, as it does not depend on
-// the tree). Submits are recorded once; what a frame is told goes through as many slots as frames may be
-// under way. A scene without motion stands still.
+// instances, whose meshes get their trees before the first frame if they stand still: vertices and trees of
+// those that deform, transforms, boxes and the tree over the instances, picture. The tree is that of the
+// frame, built, or that of the last build, refitted; the picture is the same (with the watertight and the
+// robust test, as it does not depend on the tree). Submits are recorded once; what a frame is told goes
+// through as many slots as frames may be under way. A scene without motion stands still.
 class MovingFrames {
  public:
   // Throws DeviceError if the device's memory does not hold it or a mesh's tree does not come out,
-  // LayoutError if a slot is too large, what plan_vertices and plan_frame throw, and std::invalid_argument
-  // for instances with refits. Device and scene must outlive it.
+  // LayoutError if a slot is too large, and what plan_vertices and plan_frame throw. Device and scene must
+  // outlive it.
   MovingFrames(Device& device, const Scene& scene, const MovingOptions& options);
   ~MovingFrames();
   MovingFrames(const MovingFrames&) = delete;
@@ -70,15 +72,23 @@ class MovingFrames {
   // The steps of the last frame that was submitted, and what they read, for other executors and for timing
   // each kernel.
   const FramePlan& plan() const { return plan_; }
+  const MovingInstances& instances() const { return instances_; }
   const Layout& layout() const { return layout_; }
   GpuExecutor& executor() { return executor_; }
   std::vector<Step> steps(bool rebuilds = true) const;
+
+  // The steps of a frame that builds, in one part for each tree that it builds.
+  struct Part {
+    std::vector<Step> steps;
+    BuildPlan build;
+  };
+  std::vector<Part> parts() const;
 
  private:
   // Of a frame under way.
   struct Told {
     MotionSlots motion;
-    Slot<uint> turn;  // of a swarm
+    InstancesTold instances;
     Slot<Film> film;
   };
   struct Left {
@@ -86,6 +96,7 @@ class MovingFrames {
     Slot<BuildState> state;
     Slot<TraceCounters> counters;
     Slot<RefitState> refit;
+    InstancesLeft instances;
   };
   struct FrameSlots {
     Told told;
@@ -101,23 +112,25 @@ class MovingFrames {
   void append(Chain& chain, const FrameSlots& slots, bool rebuilds) const;
   void append_places(Chain& chain, const Told& told) const;
   void append_update(Chain& chain, bool rebuilds) const;
+  void append_picture(Chain& chain, const FrameSlots& slots) const;
   void append_tree(Chain& chain, bool rebuilds) const;
   void upload_scene(const Scene& scene);
-  void build_meshes();
+  void build_what_stands_still();
   void tell(const Told& told, double seconds, const Film& film);
   UpdateChooser chooser() const;
   bool may_refit() const { return options_.update != Update::rebuild; }
   bool has_state() const { return may_refit() || options_.tree_cost; }
   MovingFrame outcome(const Recorder::Times& times, const Left& left);
+  std::uint32_t appeared(const Left& left);
   template <class T>
   const T* mapped(const Slot<T>& slot);
 
+  const Scene& scene_;
   Motion motion_;
-  std::optional<Swarm> swarm_;
   MovingOptions options_;
   Layout layout_;
-  MovingVertices vertices_;       // empty of a scene with instances, as what they are told
-  Slot<InstanceTransform> rest_;  // of a swarm
+  MovingVertices vertices_;    // empty of a scene with instances, as what they are told
+  MovingInstances instances_;  // empty without
   std::vector<FrameSlots> slots_;
   RefitPlan refit_;  // empty where no frame is refitted; as what stands above, planned with plan_
   FramePlan plan_;

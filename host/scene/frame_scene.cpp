@@ -63,11 +63,24 @@ class Moments {
   std::vector<std::vector<glm::vec3>> later_;
 };
 
+// Of a scene with instances, at several times of a cycle too.
+Scene boxes_in_motion(const Scene& scene) {
+  Scene seen = boxes_of_instances(scene);
+  constexpr int count = 8;
+  for (int k = 1; scene.motion && k < count; ++k) {
+    const Scene moment = boxes_of_instances(standing_at(scene, scene.motion->duration_seconds * k / count));
+    const auto first = static_cast<std::uint32_t>(seen.positions.size());
+    seen.positions.insert(seen.positions.end(), moment.positions.begin(), moment.positions.end());
+    for (const glm::uvec3& corners : moment.indices) seen.indices.push_back(corners + first);
+  }
+  return seen;
+}
+
 }  // namespace
 
 Camera frame_scene(const Scene& scene, float aspect) {
   if (scene.camera) return *scene.camera;
-  if (!scene.instances.empty()) return frame_scene(boxes_of_instances(scene), aspect);
+  if (!scene.instances.empty()) return frame_scene(boxes_in_motion(scene), aspect);
 
   Camera camera;
   const glm::dvec3 toward_camera = glm::normalize(glm::dvec3{0.55, 0.42, 0.83});

@@ -8,6 +8,7 @@
 
 #include "scene/bounds.h"
 #include "scene/input_error.h"
+#include "scene/motion.h"
 #include "scene/random.h"
 #include "scene/shapes.h"
 
@@ -118,7 +119,25 @@ Scene flattened(Scene scene) {
   scene.meshes.clear();
   scene.instances.clear();
   scene.swarm.reset();
+  scene.motion = nullptr;
   return scene;
+}
+
+Scene standing_at(const Scene& scene, double seconds) {
+  Scene still = scene;
+  for (InstancedMesh& mesh : still.meshes) {
+    if (!mesh.motion) continue;
+    std::ranges::copy(positions_at(*mesh.motion, seconds),
+                      still.positions.begin() + static_cast<std::ptrdiff_t>(mesh.first_vertex));
+    mesh.motion = nullptr;
+  }
+  still.motion = nullptr;
+  still.swarm.reset();
+  if (!scene.motion) return still;
+  const std::vector<glm::mat4x3> moved = instances_at(*scene.motion, seconds);
+  for (std::size_t i = 0; i < moved.size(); ++i)
+    still.instances[scene.motion->moved_instances[i]].transform = moved[i];
+  return still;
 }
 
 Scene boxes_of_instances(const Scene& scene) {

@@ -18,9 +18,13 @@ std::uint64_t instanced_triangles(const Scene& scene);
 
 // The scene with every instance's triangles in their place, instance after instance, and no instances:
 // corners are rounded as on the device (docs/numerics.md, "Instances"), so a hit is the same one here and
-// there. They stand still from then on. A scene without instances as it is. Throws InputError for more
-// triangles than 32 bits count.
+// there. They stand still from then on, as they are at second 0; the camera too. A scene without instances as
+// it is. Throws InputError for more triangles than 32 bits count.
 Scene flattened(Scene scene);
+
+// The scene as it stands at that time, by the host: instances that keyframes move and vertices of meshes that
+// deform. A swarm rests.
+Scene standing_at(const Scene& scene, double seconds);
 
 // "instances:N": a swarm of so many instances of three meshes, stones, ferns and boxes, turned, scaled and
 // every other one mirrored, on their way around the axis y. They stand about as close however many there are.

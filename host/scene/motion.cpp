@@ -135,6 +135,14 @@ Pose pose_at(const Motion& motion, double seconds) {
   return pose;
 }
 
+std::vector<glm::mat4x3> instances_at(const Motion& motion, double seconds) {
+  std::vector<glm::mat4x3> result;
+  if (motion.moved_instances.empty()) return result;
+  for (const glm::dmat4& place : motion.rig->instances(seconds))
+    result.emplace_back(glm::dmat4x3(motion.to_scene * place));
+  return result;
+}
+
 std::vector<glm::vec3> positions_at(const Motion& motion, double seconds) {
   const Pose pose = pose_at(motion, seconds);
   std::vector<glm::dvec3> positions(motion.rest.begin(), motion.rest.end());

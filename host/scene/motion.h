@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <glm/mat4x3.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -87,6 +88,8 @@ class Rig {
  public:
   virtual ~Rig() = default;
   virtual Pose pose(double seconds) const = 0;  // a pure function; every time has one
+  // Where Motion::moved_instances are, from the spaces of their meshes.
+  virtual std::vector<glm::dmat4> instances(double) const { return {}; }
 };
 
 // What moves in a scene, or could: Scene::positions are those at second 0.
@@ -99,6 +102,8 @@ struct Motion {
   std::vector<std::array<std::uint16_t, 4>> joints;  // into Pose::joints
   std::vector<glm::vec4> weights;
   std::shared_ptr<const Rig> rig;  // null: one joint that stands still
+  // Of a scene with instances: those that the rig moves, in rising order, and no vertices.
+  std::vector<std::uint32_t> moved_instances;
   // From where the rig takes vertices to the coordinates of the scene (stand_up, bring_into_range).
   glm::dmat4 to_scene{1.0};
   double duration_seconds = 1;    // of one cycle; positive
@@ -110,6 +115,9 @@ Motion motion_of(const Scene& scene);
 
 // The pose with to_scene applied to joints and camera. At least one joint.
 Pose pose_at(const Motion& motion, double seconds);
+
+// Where moved_instances are at that time: computed in double, rounded once.
+std::vector<glm::mat4x3> instances_at(const Motion& motion, double seconds);
 
 // Where the vertices are at that time: computed in double, rounded once.
 std::vector<glm::vec3> positions_at(const Motion& motion, double seconds);

@@ -43,9 +43,15 @@ struct Camera {
   float vertical_fov_degrees = 40.0f;
 };
 
+struct Motion;  // scene/motion.h
+
 // Triangles that follow each other in a scene and are seen where instances of them are.
 struct InstancedMesh {
   std::uint32_t first_triangle = 0, triangle_count = 0;
+  // Of one that deforms: its vertices follow each other, too, and the motion is theirs alone, in the space of
+  // the mesh. Null: they stand still.
+  std::uint32_t first_vertex = 0;
+  std::shared_ptr<const Motion> motion{};
 };
 
 // A mesh in its place, see scene/instances.h.
@@ -61,8 +67,6 @@ struct Swarm {
   double seconds = 32;            // a whole cycle; positive
   double frames_per_second = 30;  // that the scene asks for; positive
 };
-
-struct Motion;  // scene/motion.h
 
 // An indexed triangle mesh with what it takes to light and see it. +y is up; the unit of length is the
 // scene's own. Coordinates may be non-finite: a triangle with such a vertex is inactive, kept here and left
@@ -84,9 +88,10 @@ struct Scene {
   std::vector<Material> materials = {Material{}};  // never empty
   std::optional<Camera> camera;                    // absent: frame_scene chooses one
   DirectionalLight light;
-  glm::vec3 ambient_light{0.35f};        // linear RGB, multiplies Material::diffuse
-  std::shared_ptr<const Motion> motion;  // null: nothing moves
-  std::vector<std::string> warnings;     // one line each, what was odd about the input but not fatal
+  glm::vec3 ambient_light{0.35f};  // linear RGB, multiplies Material::diffuse
+  // Null: nothing moves but a swarm. With instances it has no vertices: these are in InstancedMesh::motion.
+  std::shared_ptr<const Motion> motion;
+  std::vector<std::string> warnings;  // one line each, what was odd about the input but not fatal
 };
 
 // Number of triangles with at least one non-finite vertex coordinate.

@@ -219,10 +219,7 @@ Scene Composer::compose_with(glm::dvec3 offset) {
   bool moves = !rig_->parts.empty();
   if (from_.camera && from_.camera->moves()) {
     moves = true;
-    for (const auto* track :
-         {&from_.camera->position, &from_.camera->target, &from_.camera->up, &from_.camera->fov}) {
-      if (*track) duration_ = std::max(duration_, (*track)->times.back());
-    }
+    duration_ = std::max(duration_, from_.camera->end());
   }
   if (!moves) {
     scene_.positions = std::move(motion_.rest);
@@ -258,6 +255,14 @@ Camera CameraTracks::at(double seconds) const {
     camera.vertical_fov_degrees = static_cast<float>(std::clamp(degrees[0], 0.01, 179.0));
   }
   return camera;
+}
+
+double CameraTracks::end() const {
+  double end = 0;
+  for (const auto* track : {&position, &target, &up, &fov}) {
+    if (*track) end = std::max(end, (*track)->times.back());
+  }
+  return end;
 }
 
 glm::dmat4 from_offset(const Scene& scene) {

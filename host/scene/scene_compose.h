@@ -25,6 +25,7 @@ struct CameraTracks {
 
   bool moves() const { return position || target || up || fov; }
   Camera at(double seconds) const;
+  double end() const;  // of the longest track
 };
 
 // Where the parts go: nodes in the scene and what moves them.
@@ -41,19 +42,23 @@ struct Composition {
 // triangles or joints than a scene can have; the message is without a file.
 Scene compose(Composition composition);
 
-// Meshes that stand still, once each, and where they are placed.
+// Meshes, once each, and where they are placed.
 struct InstanceComposition {
   struct Placed {
     std::uint32_t mesh;  // into meshes
-    glm::dmat4 place;
+    std::uint32_t node;
   };
-  std::vector<Scene> meshes;  // stood up, not brought into range; without motion
+  GltfRig nodes;              // nodes, parents, order and tracks of it
+  std::vector<Scene> meshes;  // stood up, not brought into range
   std::vector<Placed> placed;
-  std::optional<Camera> camera{};  // else that of the first placed mesh that has one
+  std::optional<CameraTracks> camera{};  // else that of the first placed mesh that has one
+  double frames_per_second = 30;
+  std::optional<double> duration{};  // else that of what takes longest
 };
 
-// One scene with all of them as instances, near the origin if they are far from it for their size. Throws
-// InputError, without a file, for more triangles than a scene can have.
+// One scene with all of them as instances, near the origin if they are far from it for their size. A mesh
+// that has a motion keeps it; there is a motion of the scene if a mesh has one, or instances or the camera
+// move. Throws InputError, without a file, for more triangles than a scene can have.
 Scene compose_instances(const InstanceComposition& composition);
 
 // From a part's coordinates, of which an offset may have been subtracted.

@@ -1,17 +1,17 @@
 #include "scene/scene_file.h"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "scene/bounds.h"
 #include "scene/input_error.h"
 #include "scene/json_check.h"
 #include "scene/load_ply.h"
 #include "scene/obj_file.h"
 #include "scene/printable.h"
 #include "scene/scene_compose.h"
+#include "scene/scene_file_deform.h"
 #include "scene/scene_file_instances.h"
 #include "scene/scene_file_meshes.h"
 #include "scene/scene_file_tracks.h"
@@ -52,10 +52,9 @@ class SceneFileReader {
   void add_part(std::uint32_t node, const json& object, const std::string& pointer);
   void add_instance(std::uint32_t node, const json& object, const std::string& pointer);
   void set_material(Scene& mesh, const json& object, const std::string& pointer);
-  void add_deformation(ScenePart& part, const json& deform, const std::string& pointer);
   void read_light(Scene& scene) const;
   void read_camera();
-  bool is_instanced() const { return file_.contains("instances"); }
+  bool is_instanced() const { return sources_.keeps_instances && file_.contains("instances"); }
   Scene composed();
 
   const json& file_;
@@ -63,8 +62,7 @@ class SceneFileReader {
   const SceneFileSources& sources_;
   Composition composition_;
   InstanceComposition instances_;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> placed_;             // a mesh of instances_ and a node
-  std::map<std::pair<std::string, std::string>, std::uint32_t> instanced_;  // by mesh and material
+  std::map<std::array<std::string, 3>, std::uint32_t> instanced_;  // by mesh, material and deformation
   std::map<std::string, Scene> meshes_;
   std::vector<std::string> warnings_;
 };
@@ -92,35 +90,6 @@ Scene SceneFileReader::mesh_of(const std::string& mesh, const std::string& point
   return meshes_[mesh] = std::move(scene);
 }
 
-void SceneFileReader::add_deformation(ScenePart& part, const json& from, const std::string& pointer) {
-  Deformation deformation;
-  const std::string kind = from["kind"].get<std::string>();
-  const auto& kinds = {"wave", "twist", "explode", "swarm", "sway"};
-  deformation.kind = static_cast<DeformKind>(std::find(kinds.begin(), kinds.end(), kind) - kinds.begin());
-  const bool in_pieces = kind == "explode" || kind == "swarm";
-  if (!in_pieces && from.contains("piece_triangles")) {
-    fail_at(name_, pointer + "/piece_triangles", "does not go with \"" + kind + "\"");
-  }
-  if (in_pieces) {
-    if (part.scene.motion) {
-      fail_at(name_, pointer + "/kind", "\"" + kind + "\" needs vertices that no animation moves");
-    }
-    unshare_vertices(part.scene);
-    deformation.piece_vertices = 3 * from.value("piece_triangles", 1u);
-  }
-  const Bounds bounds = visible_bounds(part.scene);
-  glm::dvec3 centre = bounds.centre();
-  if (kind == "sway" && !bounds.empty()) centre.y = bounds.low.y;
-  deformation.centre = from.contains("centre") ? vector_of(from["centre"]) : glm::vec3(centre);
-  const double extent = std::isfinite(bounds.extent()) && bounds.extent() > 0 ? bounds.extent() : 1.0;
-  deformation.size = from.value("size", static_cast<float>(std::min(extent, 1e38)));
-  const double amounts[] = {0.1, 0.25, 1, 0.1, 0.1};
-  deformation.amount =
-      from.value("amount", static_cast<float>(amounts[static_cast<std::size_t>(deformation.kind)]));
-  deformation.seconds = from.value("seconds", deformation.seconds);
-  part.deformation = deformation;
-}
-
 void SceneFileReader::set_material(Scene& mesh, const json& object, const std::string& pointer) {
   if (!object.contains("material")) return;
   const std::string material = object["material"].get<std::string>();
@@ -133,18 +102,19 @@ void SceneFileReader::set_material(Scene& mesh, const json& object, const std::s
   std::fill(mesh.material_index.begin(), mesh.material_index.end(), 0u);
 }
 
-// Each mesh is opened and kept once, with each of its materials.
+// Each mesh is opened and kept once, with each of its materials and deformations.
 void SceneFileReader::add_instance(std::uint32_t node, const json& object, const std::string& pointer) {
   const std::string name = object["mesh"].get<std::string>();
   const std::string material = object.contains("material") ? "m" + object["material"].get<std::string>() : "";
+  const std::string deform = object.contains("deform") ? object["deform"].dump() : "";
   const auto next = static_cast<std::uint32_t>(instances_.meshes.size());
-  const auto [known, is_new] = instanced_.try_emplace({name, material}, next);
-  placed_.emplace_back(known->second, node);
+  const auto [known, is_new] = instanced_.try_emplace({name, material, deform}, next);
+  instances_.placed.push_back({known->second, node});
   if (!is_new) return;
   Scene mesh = mesh_of(name, pointer + "/mesh");
-  if (mesh.motion)
-    fail_at(name_, pointer + "/mesh", shortened(object["mesh"]) + " moves, with \"instances\" none may");
   set_material(mesh, object, pointer);
+  if (object.contains("deform"))
+    add_deformation(mesh, read_deformation(object["deform"], mesh, name_, pointer + "/deform"));
   instances_.meshes.push_back(std::move(mesh));
 }
 
@@ -160,7 +130,8 @@ void SceneFileReader::add_part(std::uint32_t node, const json& object, const std
   part.node = node;
   part.scene = mesh_of(object["mesh"].get<std::string>(), pointer + "/mesh");
   set_material(part.scene, object, pointer);
-  if (object.contains("deform")) add_deformation(part, object["deform"], pointer + "/deform");
+  if (object.contains("deform"))
+    part.deformation = read_deformation(object["deform"], part.scene, name_, pointer + "/deform");
   composition_.parts.push_back(std::move(part));
 }
 
@@ -258,17 +229,17 @@ void stand_up_whole(Scene& scene, std::string_view up) {
 
 Scene SceneFileReader::composed() {
   if (!is_instanced()) return compose(std::move(composition_));
-  if (composition_.camera) instances_.camera = composition_.camera->at(0);
-  const std::vector<glm::dmat4> places = composition_.nodes.transforms(0);
-  for (const auto& [mesh, node] : placed_) instances_.placed.push_back({mesh, places[node]});
+  instances_.nodes = std::move(composition_.nodes);
+  instances_.camera = composition_.camera;
+  instances_.frames_per_second = composition_.frames_per_second;
+  instances_.duration = composition_.duration;
   Scene scene = compose_instances(instances_);
-  if (scene.instances.empty()) return scene;
-  scene.swarm = read_swarm(file_["instances"], composition_.frames_per_second);
+  if (!scene.instances.empty()) scene.swarm = read_swarm(file_["instances"], instances_.frames_per_second);
   return scene;
 }
 
 Scene SceneFileReader::read() {
-  if (is_instanced()) check_stands_still(file_, name_);
+  if (is_instanced()) check_swarm(file_, name_);
   read_objects();
   read_camera();
   composition_.frames_per_second = file_.value("frames_per_second", 30.0);
@@ -295,7 +266,7 @@ Scene parse_scene_file(std::string_view text, const std::string& name, const Sce
   return SceneFileReader(file, name, sources).read();
 }
 
-Scene load_scene_file(const std::filesystem::path& path) {
+Scene load_scene_file(const std::filesystem::path& path, bool keep_instances) {
   const ObjFile file = read_obj_file(path);
   const std::filesystem::path folder = path.parent_path();
   SceneFileSources sources;
@@ -305,6 +276,10 @@ Scene load_scene_file(const std::filesystem::path& path) {
   sources.built_in = [](const std::string& name) { return make_built_in(name); };
   sources.bytes = [&](const std::string& name) { return std::string(read_obj_file(folder / name).text()); };
   Scene scene = parse_scene_file(file.text(), printable(path), sources);
+  if (!keep_instances && !scene.instances.empty() && scene.motion) {
+    sources.keeps_instances = false;
+    scene = parse_scene_file(file.text(), printable(path), sources);
+  }
   scene.name = printable(path.stem());
   return scene;
 }

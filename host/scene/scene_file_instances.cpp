@@ -6,15 +6,11 @@
 
 namespace coppice {
 
-void check_stands_still(const nlohmann::json& file, const std::string& name) {
-  const auto refuse = [&](const nlohmann::json& from, const std::string& pointer, const char* key) {
-    if (from.contains(key)) fail_at(name, pointer + "/" + key, "does not go with \"instances\"");
-  };
-  refuse(file, "", "duration");
-  if (file.contains("camera")) refuse(file["camera"], "/camera", "keyframes");
+void check_swarm(const nlohmann::json& file, const std::string& name) {
+  if (!file["instances"].contains("swarm")) return;
   for (std::size_t i = 0; i < file["objects"].size(); ++i) {
-    for (const char* const key : {"keyframes", "deform"})
-      refuse(file["objects"][i], "/objects/" + std::to_string(i), key);
+    if (file["objects"][i].contains("keyframes"))
+      fail_at(name, "/objects/" + std::to_string(i) + "/keyframes", "does not go with a \"swarm\"");
   }
 }
 

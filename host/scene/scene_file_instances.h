@@ -8,9 +8,9 @@
 
 namespace coppice {
 
-// Of a scene file with "instances", which move all together or not at all: throws InputError where anything
-// else says that it moves.
-void check_stands_still(const nlohmann::json& file, const std::string& name);
+// Of a scene file with "instances": throws InputError where a swarm, which moves all objects together, meets
+// an object that has keyframes of its own.
+void check_swarm(const nlohmann::json& file, const std::string& name);
 
 // Of "instances"; none without a "swarm".
 std::optional<Swarm> read_swarm(const nlohmann::json& instances, double frames_per_second);

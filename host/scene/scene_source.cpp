@@ -140,11 +140,11 @@ Scene open_anim(const std::filesystem::path& path) {
   return scene;
 }
 
-Scene open_file(const std::string& spec) {
+Scene open_file(const std::string& spec, bool keep_instances) {
   const std::filesystem::path path = spec;
   const std::string extension = extension_of(path);
   if (is_mesh_file(path)) return load_mesh_file(path);
-  if (extension == ".json") return load_scene_file(path);
+  if (extension == ".json") return load_scene_file(path, keep_instances);
   if (extension == ".anim") return open_anim(path);
 
   std::error_code error;
@@ -217,7 +217,7 @@ Scene make_built_in(const std::string& spec) {
 
 Scene open_scene(const std::string& spec, std::string_view up, bool keep_instances) {
   std::optional<Scene> generated = find_generated(spec);
-  Scene scene = generated ? std::move(*generated) : open_file(spec);
+  Scene scene = generated ? std::move(*generated) : open_file(spec, keep_instances);
   if (!keep_instances) scene = flattened(std::move(scene));
   stand_up(scene, up);
   bring_into_range(scene);

@@ -76,7 +76,9 @@ Bytes move_instances(const MoveInstancesArgs& a, const RunCounts&) {
 
 // Meshes and their roots are few.
 Bytes instance_boxes(const InstanceBoxesArgs& a, const RunCounts&) {
-  return Bytes{a.instance_count} * (sizeof(InstanceTransform) + 4 + sizeof(PlacedInstance) + sizeof(Aabb));
+  const Bytes corners = a.corners.value ? sizeof(Triangle) : 0;
+  return Bytes{a.instance_count} *
+         (sizeof(InstanceTransform) + 4 + sizeof(PlacedInstance) + sizeof(Aabb) + corners);
 }
 
 // Of each hit the way to the triangle at least: the instance and its transform.

@@ -68,6 +68,7 @@ struct InstanceBoxesArgs {
   READS(NodeBuffer) mesh_nodes;
   PlacedInstanceBuffer placed;  // out: instance_count
   AabbBuffer boxes;             // out: instance_count; an inactive one has box_min > box_max
+  TriangleBuffer corners;       // out: instance_count, triangles that have these boxes; null: not wanted
   UintBuffer mesh_height;       // out, 0 before: the greatest height of an active instance's tree
   uint instance_count;
   uint mesh_count;

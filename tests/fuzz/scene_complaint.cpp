@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <span>
 
 #include "scene/bounds.h"
 #include "scene/motion.h"
@@ -16,8 +17,8 @@ bool is_sound(const Material& material) {
          material.opacity >= 0 && material.opacity <= 1;
 }
 
-std::string complaint_about_motion(const Scene& scene, const Motion& motion) {
-  const std::size_t count = scene.positions.size();
+std::string complaint_about_motion(std::span<const glm::vec3> positions, const Motion& motion) {
+  const std::size_t count = positions.size();
   const auto is_inside = [&](VertexRange range) {
     return range.first <= count && range.count <= count - range.first;
   };
@@ -43,7 +44,7 @@ std::string complaint_about_motion(const Scene& scene, const Motion& motion) {
   for (const auto& joints : motion.joints) {
     if (*std::max_element(joints.begin(), joints.end()) >= pose.joints.size()) return "joint";
   }
-  if (!is_same(positions_at(motion, 0), scene.positions)) return "positions at second 0";
+  if (!is_same(positions_at(motion, 0), {positions.begin(), positions.end()})) return "positions at second 0";
   for (const double seconds : {-1.0, 0.37 * motion.duration_seconds, 1e9}) {
     const Pose other = pose_at(motion, seconds);
     if (other.joints.size() != pose.joints.size()) return "joints of another time";
@@ -53,9 +54,33 @@ std::string complaint_about_motion(const Scene& scene, const Motion& motion) {
   return "";
 }
 
+std::string complaint_about_mesh(const Scene& scene, const InstancedMesh& mesh) {
+  if (std::uint64_t{mesh.first_triangle} + mesh.triangle_count > scene.indices.size()) return "mesh";
+  if (!mesh.motion) return "";
+  const std::span<const glm::vec3> positions(scene.positions);
+  const std::size_t count = mesh.motion->rest.size();
+  if (mesh.first_vertex > positions.size() || count > positions.size() - mesh.first_vertex)
+    return "vertices of a mesh";
+  for (std::uint32_t i = 0; i < mesh.triangle_count; ++i) {
+    for (int corner = 0; corner < 3; ++corner) {
+      const std::uint32_t vertex = scene.indices[mesh.first_triangle + i][corner];
+      if (vertex < mesh.first_vertex || vertex - mesh.first_vertex >= count) return "corner of a mesh";
+    }
+  }
+  return complaint_about_motion(positions.subspan(mesh.first_vertex, count), *mesh.motion);
+}
+
 std::string complaint_about_instances(const Scene& scene) {
   for (const InstancedMesh& mesh : scene.meshes) {
-    if (std::uint64_t{mesh.first_triangle} + mesh.triangle_count > scene.indices.size()) return "mesh";
+    if (const std::string complaint = complaint_about_mesh(scene, mesh); !complaint.empty()) return complaint;
+  }
+  if (scene.motion) {
+    const std::vector<std::uint32_t>& moved = scene.motion->moved_instances;
+    if (!std::ranges::is_sorted(moved) || (!moved.empty() && moved.back() >= scene.instances.size()))
+      return "instances that move";
+    for (const double seconds : {0.0, 0.37 * scene.motion->duration_seconds, 1e9}) {
+      if (instances_at(*scene.motion, seconds).size() != moved.size()) return "count of instances that move";
+    }
   }
   for (const Instance& instance : scene.instances) {
     if (instance.mesh >= scene.meshes.size()) return "mesh of an instance";
@@ -102,7 +127,9 @@ std::string complaint_about(const Scene& scene) {
   }
   if (!is_finite(scene.light.direction)) return "light";
   if (scene.motion) {
-    const std::string complaint = complaint_about_motion(scene, *scene.motion);
+    const std::span<const glm::vec3> positions(scene.positions);
+    const std::string complaint =
+        complaint_about_motion(scene.instances.empty() ? positions : positions.first(0), *scene.motion);
     if (!complaint.empty()) return complaint;
   }
   if (const std::string complaint = complaint_about_instances(scene); !complaint.empty()) return complaint;

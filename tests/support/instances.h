@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/geometric.hpp>
+#include <glm/mat4x3.hpp>
 #include <span>
 #include <vector>
 
@@ -57,6 +58,12 @@ inline std::vector<Hit> flattened_hits(const InstancesToTrace& scene, std::span<
 
 inline InstanceTransform transform_of(const vec3& x, const vec3& y, const vec3& z, const vec3& move) {
   return {{x.x, y.x, z.x}, move.x, {x.y, y.y, z.y}, move.y, {x.z, y.z, z.z}, move.z};
+}
+
+// As a scene has it.
+inline glm::mat4x3 columns_of(const InstanceTransform& t) {
+  return {t.row_x.x, t.row_y.x, t.row_z.x, t.row_x.y, t.row_y.y, t.row_z.y,
+          t.row_x.z, t.row_y.z, t.row_z.z, t.move_x,  t.move_y,  t.move_z};
 }
 
 inline InstanceTransform moved_by(const vec3& move) {

@@ -4,6 +4,7 @@
 
 #include "render/film.h"
 #include "render/moving_frames.h"
+#include "support/instances.h"
 #include "support/test_device.h"
 
 namespace coppice {
@@ -24,6 +25,23 @@ inline std::vector<uint> frame_at(MovingFrames& frames, double seconds, const Fi
   frames.submit(seconds, film);
   const MovingFrame frame = frames.take();
   return {frame.image.begin(), frame.image.end()};
+}
+
+// A scene with instances as the last frame had it: where the device has moved instances and vertices.
+inline Scene as_moved(Scene scene, MovingFrames& frames) {
+  const auto transforms = frames.executor().read(frames.plan().levels->plan.transforms);
+  for (std::size_t i = 0; i < transforms.size(); ++i)
+    scene.instances[i].transform = columns_of(transforms[i]);
+  for (const MovingInstances::Mesh& moved : frames.instances().meshes) {
+    InstancedMesh& mesh = scene.meshes[moved.mesh];
+    const std::vector<float> words = frames.executor().read(moved.vertices.vertices);
+    for (std::size_t i = 0; i < words.size(); ++i)
+      scene.positions[mesh.first_vertex + i / 3][static_cast<int>(i % 3)] = words[i];
+    mesh.motion = nullptr;
+  }
+  scene.motion = nullptr;
+  scene.swarm.reset();
+  return scene;
 }
 
 // The picture of a scene that stands still, through one level.
