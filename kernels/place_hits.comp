@@ -15,6 +15,7 @@ void main() {
   Triangle triangle = Triangle(vec3(0.0), vec3(0.0), vec3(0.0));
   uint material = 0u;
   uint index = args.hits.at[i].triangle;
+  if (uint64_t(args.primitives) != 0ul) args.primitives.at[i] = index == NO_TRIANGLE ? 0u : index;
   if (index != NO_TRIANGLE) {
     uint instance = args.hit_instances.at[i];
     uint own = args.meshes.at[args.placed.at[instance].mesh].first_triangle + index;

@@ -2,6 +2,7 @@
 // range of steps or depths. All but normals is exact arithmetic.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #include "interface/show.h"
 #include "lib/colour_of_id.glsl"
 #include "lib/exact_vector.glsl"
@@ -26,12 +27,26 @@ vec3 colour_of_normal(Triangle triangle) {
   return colour;
 }
 
+// Of two levels a hit's triangle is the ray's index (place_hits).
+bool has_instances() { return uint64_t(args.hit_instances) != 0ul; }
+uint instance_of(uint i) { return has_instances() ? args.hit_instances.at[i] : 0u; }
+
+uint id_of(uint i, uint triangle) {
+  if (!has_instances()) return triangle;
+  return args.hit_primitives.at[i] + args.hit_instances.at[i] * SHOW_INSTANCE_STRIDE;
+}
+
+uint word_of(uint i, uint triangle) {
+  return args.primitive_values.at[has_instances() ? args.hit_instances.at[i] : triangle];
+}
+
 // The line of sight has length 1 in the ray's direction, so t is the depth.
 vec3 colour_of_hit(uint i, uint triangle) {
   if (SHOW_VIEW == SHOW_DEPTH) return colour_of_value(args.hits.at[i].t);
   if (SHOW_VIEW == SHOW_NORMALS) return colour_of_normal(args.triangles.at[triangle]);
-  if (SHOW_VIEW == SHOW_RANKS) return colour_of_value(float(args.primitive_values.at[triangle]));
-  return colour_of_id(SHOW_VIEW == SHOW_GROUPS ? args.primitive_values.at[triangle] : triangle);
+  if (SHOW_VIEW == SHOW_RANKS) return colour_of_value(float(word_of(i, triangle)));
+  if (SHOW_VIEW == SHOW_INSTANCES) return colour_of_id(instance_of(i));
+  return colour_of_id(SHOW_VIEW == SHOW_GROUPS ? word_of(i, triangle) : id_of(i, triangle));
 }
 
 // Partners: all subgroups of all dispatches for the picture.

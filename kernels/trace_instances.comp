@@ -11,6 +11,7 @@ layout(local_size_x = TRACE_GROUP) in;
 layout(push_constant, scalar) uniform Push { TraceInstancesArgs args; };
 layout(constant_id = 0) const uint TRACE_MAX_TURNS = 0xffffffffu;
 layout(constant_id = 1) const uint TRACE_STACK = TRACE_STACK_LIMIT;  // entries
+layout(constant_id = 2) const bool TRACE_COUNTS_RAYS = false;  // the steps of each are kept
 const uint TRACE_TRIANGLE_TEST = TRIANGLE_WATERTIGHT;
 const uint TRACE_BOX_TEST = BOX_ROBUST;
 
@@ -53,6 +54,7 @@ void main() {
     store_hit(args.hits, i, so_far);
     args.hit_instances.at[i] = instance;
     has_hit = so_far.triangle != NO_TRIANGLE;
+    if (TRACE_COUNTS_RAYS) args.ray_steps.at[i] = steps;
   }
   COUNT_INTO(args.counters.at[0].rays, present ? 1u : 0u)
   COUNT_INTO(args.counters.at[0].hits, has_hit ? 1u : 0u)

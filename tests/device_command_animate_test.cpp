@@ -182,6 +182,23 @@ TEST_F(CommandAnimate, MovesInstances) {
   EXPECT_NE(text.out.find("in 200 instances of meshes"), std::string::npos) << text.out;
 }
 
+// What is seen in place of colours, of instances.
+TEST_F(CommandAnimate, RendersInstanceIds) {
+  const std::string render = "render instances:60 --size 48x32 -o ids.png --json - ";
+  const json ids = json_of(run(render + "--show instances"));
+  EXPECT_EQ(ids["show"], "instances");
+  EXPECT_EQ(ids["instances"], 60);
+  const json morton = json_of(run(render + "--show morton"));
+  EXPECT_EQ(morton["instances"], 60);
+  EXPECT_NE(ids["image_hash"], morton["image_hash"]);
+  const json clusters = json_of(run(render + "--show clusters --round 1 --builder gpu-ploc"));
+  EXPECT_LT(clusters["shown"]["clusters"], 60) << "of instances";
+  const json normals = json_of(run(render + "--show normals"));
+  EXPECT_EQ(normals["image_hash"], json_of(run(render + "--show normals --tree wide"))["image_hash"]);
+  expect_refused("render one.obj -o ids.png --show instances", 1, "has no instances");
+  expect_refused("render instances:60 -o ids.png --show instances --tree wide", 2, "a binary tree");
+}
+
 // A scene file says that its objects are instances, and that they move.
 TEST_F(CommandAnimate, MovesTheObjectsOfASceneFile) {
   const std::string objects =
@@ -203,7 +220,8 @@ TEST_F(CommandAnimate, MovesTheObjectsOfASceneFile) {
   EXPECT_NE(report["frame_hashes"][1], report["frame_hashes"][2]);
 }
 
-// Objects that keyframes move and meshes that deform stay instances; as triangles of one level they move, too.
+// Objects that keyframes move and meshes that deform stay instances; as triangles of one level they move,
+// too.
 TEST_F(CommandAnimate, MovesAndDeformsInstances) {
   write("herd.json", R"({"meshes": {"m": {"built_in": "hard:sphere:200"}, "g": {"built_in": "terrain:200"}},
     "camera": {"position": [0, 3, 40], "target": [0, 0, 0]}, "frames_per_second": 2,

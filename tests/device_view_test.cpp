@@ -128,6 +128,20 @@ TEST_F(ViewWindow, ShowsWhatRenderMakesFromWhereverOneLooks) {
   close();
 }
 
+// Two levels, in every view.
+TEST_F(ViewWindow, ShowsInstancesAsRenderDoes) {
+  OPEN_OR_SKIP(
+      "instances:90 --size 160x120 --pictures picture --no-panes --builder gpu-ploc --round 2 --paused");
+  int pictures = 0;
+  for (const char* view : {"1", "2", "3", "4", "5", "6", "7", "8", "9"}) {
+    key(view);
+    expect_same_as_render(++pictures);
+  }
+  for (std::size_t i = 0; i < pictures_.size(); ++i)
+    EXPECT_EQ(std::ranges::count(pictures_, pictures_[i]), 1) << i;
+  close();
+}
+
 TEST_F(ViewWindow, TakesAnySizeAndIsHiddenAndShown) {
   OPEN_OR_SKIP("terrain:500 --size 200x150 --pictures picture --rebuild");
   const std::string id = id_of_window();

@@ -120,15 +120,15 @@ class AnimateCommand : public Command {
     const Pictures pictures = folder_.empty() ? Pictures() : Pictures(folder_);
     scene_.keep_instances = traces_instances();
     const Scene scene = open_scene_of(scene_, builder_, device_, true);
-    if (!scene.motion && !scene.swarm) print_note(why_still(scene));
+    const std::optional<SceneCycle> cycle = cycle_of(scene);
+    if (!cycle) print_note(why_still(scene));
     AnimateRuns runs{.builder = builder_, .trace = picture_.trace, .camera = picture_.camera};
     runs.update = update_;
     runs.tree_cost = tree_cost_ || !files.plot.empty() || !files.csv.empty();
     runs.first = first_;
     runs.last = last_;
     runs.frames_per_second = frames_per_second_ > 0 ? frames_per_second_
-                             : scene.motion         ? scene.motion->frames_per_second
-                             : scene.swarm          ? scene.swarm->frames_per_second
+                             : cycle                ? cycle->frames_per_second
                                                     : 30;
     if (skip_existing_) runs.skip = [&](std::uint32_t number) { return pictures.has(number); };
     runs.picture = [&](std::uint32_t number, std::span<const uint> image) {
@@ -189,11 +189,12 @@ class AnimateCommand : public Command {
   }
 
   DeviceUse use_for(const Scene& scene) const {
-    return {.build = builder_.least_build_options(),
-            .traces = {picture_.trace},
-            .triangle_count = static_cast<std::uint32_t>(scene.indices.size()),
-            .refits = update_ != Update::rebuild,
-            .inputs = true};
+    DeviceUse use{.build = builder_.least_build_options(),
+                  .triangle_count = static_cast<std::uint32_t>(scene.indices.size()),
+                  .refits = update_ != Update::rebuild,
+                  .inputs = true};
+    use.traces = {picture_.trace};
+    return use;
   }
 
   // Of the pictures from the first frame of this run on, as far as they follow each other.

@@ -8,6 +8,7 @@
 #include "measure/frame_report.h"
 #include "measure/table.h"
 #include "pipeline/interruption.h"
+#include "scene/input_error.h"
 #include "scene/write_file.h"
 #include "scene/write_png.h"
 
@@ -64,6 +65,8 @@ class RenderCommand : public Command {
     need(show != Show::boxes || builder_.name != "none", "a builder: without a tree there are no boxes");
     need(show != Show::clusters || (builder_.name == "gpu-ploc" && traces_on_device()),
          "--builder gpu-ploc and --tracer gpu");
+    need(show != Show::instances || traces_instances(),
+         "--tracer gpu, a builder on the device and a binary tree");
     check_options_matter(app, {{"--most-steps", show == Show::steps, "--show steps"},
                                {"--round", show == Show::clusters, "--show clusters"},
                                {"--level", show == Show::boxes, "--show boxes"}});
@@ -79,6 +82,8 @@ class RenderCommand : public Command {
     scene_.keep_instances = traces_instances();
     const Scene scene = open_scene_of(scene_, builder_, device_, on_device);
     around.load_ms = ms_since(load_start);
+    if (show_.show == Show::instances && scene.instances.empty())
+      throw InputError("--show instances: scene '" + scene.name + "' has no instances");
 
     if (builder_.name == "none") picture_.trace.walk = Walk::brute_force;
     FrameRuns frame{builder_, picture_.trace, picture_.camera, runs_, false, files.trace_events, show_};
@@ -102,11 +107,10 @@ class RenderCommand : public Command {
  private:
   bool traces_on_device() const { return tracer_ == "gpu"; }
 
-  // Otherwise instances are flattened: only the binary walk of trees of the device knows two levels, and what
-  // is shown in place of colours is of triangles in one tree.
+  // Otherwise instances are flattened: only the binary walk of trees of the device knows two levels.
   bool traces_instances() const {
     const WalkChoice& walk = device_.choices.walk;
-    return traces_on_device() && builder_.on_device() && !walk.any_wide && show_.show == Show::color &&
+    return traces_on_device() && builder_.on_device() && !walk.any_wide &&
            walk.walk.value_or(Walk::binary) == Walk::binary && can_trace_wide(picture_.trace);
   }
 

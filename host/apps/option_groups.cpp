@@ -224,9 +224,10 @@ void add_show(CLI::App& app, ShowOptions& show) {
   const auto set = [&show](const std::string& given) {
     show.show = static_cast<Show>(std::ranges::find(SHOW_NAMES, given) - SHOW_NAMES);
   };
-  app.add_option_function<std::string>("--show", set,
-                                       "the scene, or of each pixel: nodes visited, normal, depth, triangle, "
-                                       "place in Morton order, cluster of PLOC; or boxes of the tree")
+  app.add_option_function<std::string>(
+         "--show", set,
+         "the scene, or of each pixel: nodes visited, normal, depth, triangle, "
+         "place in Morton order, cluster of PLOC, instance; or boxes of the tree")
       ->check(CLI::IsMember(std::vector<std::string>(std::begin(SHOW_NAMES), std::end(SHOW_NAMES))))
       ->default_str("color");
   app.add_option("--most-steps", show.most_steps,

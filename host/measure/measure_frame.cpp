@@ -146,8 +146,11 @@ void upload_shown(GpuExecutor& executor, const FramePlan& plan, const SceneArray
   const std::vector<Node> nodes = read_tree(executor, plan.tree);
   std::vector<PlocRound> rounds;
   if (plan.build && plan.build->rounds.count > 0) rounds = executor.read(plan.build->rounds);
+  std::vector<Triangle> boxes;
+  if (plan.levels) boxes = corners_of(executor.read(plan.levels->plan.instance_boxes));
   const std::vector<uint> values =
-      shown_values(report.shown.options, arrays.triangles, report.build.morton_bits, {nodes, rounds});
+      shown_values(report.shown.options, plan.levels ? std::span<const Triangle>(boxes) : arrays.triangles,
+                   report.build.morton_bits, {nodes, rounds});
   report.shown.clusters = count_groups(values, nodes);
   executor.upload(slots.primitive_values, std::span<const uint>(values));
 }
@@ -190,7 +193,7 @@ FrameReport measure_frame(CheckedDevice& device, const Scene& scene, const Frame
   upload_frame(executor, plan, arrays, film);
   report.shown.options = frame.show;
   report.shown.scale =
-      span_of(frame.show, film, box_of(arrays.triangles), options.trace.walk, arrays.triangle_count());
+      span_of(frame.show, film, box_of_scene(scene, arrays), options.trace.walk, arrays.primitive_count());
   if (!plan.build) upload_bvh(executor, plan.tree, bvh);
 
   const InterruptionGuard guard;

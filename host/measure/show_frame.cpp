@@ -44,6 +44,13 @@ std::vector<uint> shown_values(const ShowOptions& options, std::span<const Trian
   return clusters_of(tree.nodes, count, merges_after(tree.rounds, active, options.round));
 }
 
+std::vector<Triangle> corners_of(std::span<const Aabb> boxes) {
+  std::vector<Triangle> corners;
+  corners.reserve(boxes.size());
+  for (const Aabb& box : boxes) corners.push_back({box.box_min, box.box_max, box.box_max});
+  return corners;
+}
+
 std::uint64_t count_groups(std::span<const uint> groups, std::span<const Node> nodes) {
   std::vector<uint> words;
   for (const Node& node : nodes) {
@@ -82,6 +89,8 @@ std::string text_of(const ShownReport& shown, const Scene& scene) {
       return "  show     normals: red, green and blue are x, y and z, dark -1 and bright +1\n";
     case Show::ids:
       return "  show     ids: a colour each triangle\n";
+    case Show::instances:
+      return format("  show     instances: %zu, a colour each\n", scene.instances.size());
     case Show::morton:
       return "  show     morton: turbo along the curve, blue to red\n";
     case Show::clusters:

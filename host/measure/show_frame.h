@@ -21,6 +21,9 @@ struct ShownTree {
 std::vector<uint> shown_values(const ShowOptions& options, std::span<const Triangle> triangles,
                                std::uint32_t morton_bits, const ShownTree& tree);
 
+// Triangles that have these boxes, as what is shown of primitives takes them.
+std::vector<Triangle> corners_of(std::span<const Aabb> boxes);
+
 // How many different words of active primitives there are.
 std::uint64_t count_groups(std::span<const uint> groups, std::span<const Node> nodes);
 

@@ -80,11 +80,11 @@ BuildPlan mesh_plan(const InstancePlan& plan, std::uint32_t mesh) {
   return build;
 }
 
-TopRefit plan_top_refit(Layout& layout, InstancePlan& plan, std::uint32_t max_turns) {
+TopRefit plan_top_refit(Layout& layout, InstancePlan& plan, std::uint32_t max_turns, bool keeps_sorted) {
   plan.corners = layout.add<Triangle>("instance_corners", plan.instance_count, Memory::tree);
   TopRefit refit{plan.top, {}};
   refit.tree.triangles = plan.corners;
-  refit.refit = plan_refit(layout, refit.tree, &plan.top, max_turns);
+  refit.refit = plan_refit(layout, refit.tree, keeps_sorted ? nullptr : &plan.top, max_turns);
   return refit;
 }
 
@@ -126,19 +126,23 @@ void append_instance_hits(Chain& chain, const InstancePlan& plan, const RaySlots
     throw std::invalid_argument("instances are traced with the watertight and the robust test");
   if (slots.filter.masks() || slots.filter.count_at.count != 0)
     throw std::invalid_argument("instances are traced without masks and without a count on the device");
-  chain.run(stages::trace_instances,
-            {chain.at(plan.top.nodes), chain.at(plan.mesh_nodes), chain.at(plan.mesh_triangles),
-             chain.at(plan.meshes), chain.at(plan.placed), chain.at(plan.transforms),
-             chain.at(slots.rays, first_ray), chain.at(slots.hits, first_ray),
-             chain.at(hit_instances, first_ray), chain.at(slots.counters), chain.at(plan.top.state),
-             chain.at(plan.mesh_height), ray_count, options.stack_entries},
-            groups_of(ray_count, TRACE_GROUP), {options.max_turns, options.stack_entries});
+  chain.run(
+      stages::trace_instances,
+      {chain.at(plan.top.nodes), chain.at(plan.mesh_nodes), chain.at(plan.mesh_triangles),
+       chain.at(plan.meshes), chain.at(plan.placed), chain.at(plan.transforms),
+       chain.at(slots.rays, first_ray), chain.at(slots.hits, first_ray), chain.at(hit_instances, first_ray),
+       chain.at(slots.counters), chain.at(plan.top.state), chain.at(plan.mesh_height),
+       address_or_null(chain, slots.ray_steps, first_ray), ray_count, options.stack_entries},
+      groups_of(ray_count, TRACE_GROUP),
+      {options.max_turns, options.stack_entries, slots.ray_steps.count != 0});
 }
 
-PlacedHitSlots plan_placed_hits(Layout& layout, const InstancePlan& plan, std::uint32_t ray_count) {
+PlacedHitSlots plan_placed_hits(Layout& layout, const InstancePlan& plan, std::uint32_t ray_count,
+                                bool names_primitives) {
   return {layout.add<uint>("mesh_materials", plan.mesh_triangles.count, Memory::source),
           layout.add<uint>("hit_instances", ray_count), layout.add<Triangle>("hit_triangles", ray_count),
-          layout.add<uint>("hit_materials", ray_count)};
+          layout.add<uint>("hit_materials", ray_count),
+          layout.add<uint>("hit_primitives", names_primitives ? ray_count : 0)};
 }
 
 void append_placed_hits(Chain& chain, const InstancePlan& plan, const RaySlots& slots,
@@ -147,7 +151,8 @@ void append_placed_hits(Chain& chain, const InstancePlan& plan, const RaySlots& 
             {chain.at(placed.hit_instances, first_ray), chain.at(plan.placed), chain.at(plan.transforms),
              chain.at(plan.meshes), chain.at(plan.mesh_triangles), chain.at(placed.mesh_materials),
              chain.at(slots.hits, first_ray), chain.at(placed.triangles, first_ray),
-             chain.at(placed.material_index, first_ray), ray_count, 0},
+             chain.at(placed.material_index, first_ray), address_or_null(chain, placed.primitives, first_ray),
+             ray_count, 0},
             groups_of(ray_count, SHADE_GROUP));
 }
 

@@ -48,12 +48,14 @@ Slot<Triangle> triangles_of(const InstancePlan& plan, std::uint32_t mesh);
 BuildPlan mesh_plan(const InstancePlan& plan, std::uint32_t mesh);
 
 // What refits of the tree over the instances need, planned behind all else: it goes by triangles that have
-// the instances' boxes. Throws LayoutError.
+// the instances' boxes. `keeps_sorted`: what the sort of a build leaves is not used for them. Throws
+// LayoutError.
 struct TopRefit {
   TreeSlots tree;  // over those triangles
   RefitPlan refit;
 };
-TopRefit plan_top_refit(Layout& layout, InstancePlan& plan, std::uint32_t max_turns);
+TopRefit plan_top_refit(Layout& layout, InstancePlan& plan, std::uint32_t max_turns,
+                        bool keeps_sorted = false);
 
 // The same of a mesh's tree; it keeps its order while other meshes are built.
 RefitPlan plan_mesh_refit(Layout& layout, const InstancePlan& plan, std::uint32_t mesh,
@@ -92,8 +94,10 @@ struct PlacedHitSlots {
   Slot<uint> hit_instances;
   Slot<Triangle> triangles;
   Slot<uint> material_index;
+  Slot<uint> primitives;  // the triangle in its mesh; none unless `names_primitives`
 };
-PlacedHitSlots plan_placed_hits(Layout& layout, const InstancePlan& plan, std::uint32_t ray_count);
+PlacedHitSlots plan_placed_hits(Layout& layout, const InstancePlan& plan, std::uint32_t ray_count,
+                                bool names_primitives = false);
 
 // Of the hits of rays that follow each other; see PlaceHitsArgs.
 void append_placed_hits(Chain& chain, const InstancePlan& plan, const RaySlots& slots,

@@ -120,12 +120,15 @@ void TracePieces::append_shade(Chain& chain, Vec3Buffer radiance) const {
 
 void TracePieces::append_show(Chain& chain, Vec3Buffer radiance) const {
   const ShowSlots& show = plan_.show;
-  chain.run(stages::show,
-            {surfaces(chain).triangles, chain.at(plan_.hits, range_.first),
-             address_or_null(chain, plan_.ray_steps, range_.first),
-             address_or_null(chain, show.primitive_values), chain.at(show.colour_map), chain.at(show.scale),
-             chain.at(show.range), radiance, range_.count, sample_, plan_.options.show, 0},
-            groups_of(range_.count, SHOW_GROUP), {plan_.options.show});
+  const PlacedHitSlots placed = levels_ ? levels_->hits : PlacedHitSlots{};
+  chain.run(
+      stages::show,
+      {surfaces(chain).triangles, chain.at(plan_.hits, range_.first),
+       address_or_null(chain, plan_.ray_steps, range_.first), address_or_null(chain, show.primitive_values),
+       address_or_null(chain, placed.hit_instances, range_.first),
+       address_or_null(chain, placed.primitives, range_.first), chain.at(show.colour_map),
+       chain.at(show.scale), chain.at(show.range), radiance, range_.count, sample_, plan_.options.show, 0},
+      groups_of(range_.count, SHOW_GROUP), {plan_.options.show});
 }
 
 void TracePieces::append_pixels(Chain& chain) const {

@@ -26,7 +26,10 @@ FramePlan plan_instanced_frame(Layout& layout, const SceneArrays& scene, const F
   no_triangles.triangle_count = 0;  // each ray has a material of its own
   plan.trace =
       plan_trace(layout, no_triangles, static_cast<std::uint32_t>(scene.materials.size()), options.trace);
-  plan.levels->hits = plan_placed_hits(layout, instances, plan.trace.band_rays);
+  const uint show = options.trace.show;
+  plan.levels->hits = plan_placed_hits(layout, instances, plan.trace.band_rays, show == SHOW_IDS);
+  if (show == SHOW_RANKS || show == SHOW_GROUPS)
+    plan.trace.show.primitive_values = layout.add<uint>("instance_values", instances.instance_count);
   return plan;
 }
 

@@ -22,7 +22,7 @@ void append_copy(Chain& chain, const Slot<T>& from, Address<T> to) {
 }  // namespace
 
 MovingInstances plan_moving_instances(Layout& layout, const Scene& scene, InstancePlan& plan, bool refits,
-                                      std::uint32_t max_turns) {
+                                      std::uint32_t max_turns, bool keeps_sorted) {
   MovingInstances moving;
   for (std::uint32_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
     const InstancedMesh& from = scene.meshes[mesh];
@@ -39,7 +39,7 @@ MovingInstances plan_moving_instances(Layout& layout, const Scene& scene, Instan
     moving.moved_count = moved.back() + 1 - moved.front();
   }
   if (!refits || !moving.moves()) return moving;
-  moving.top = plan_top_refit(layout, plan, max_turns);
+  moving.top = plan_top_refit(layout, plan, max_turns, keeps_sorted);
   moving.mesh_refits = layout.add<RefitState>("mesh_refits", moving.meshes.size());
   for (std::size_t i = 0; i < moving.meshes.size(); ++i) {
     MovingInstances::Mesh& mesh = moving.meshes[i];

@@ -42,9 +42,10 @@ struct InstancesLeft {
   Slot<RefitState> mesh_refits;
 };
 
-// `refits`: whether frames may be refitted. Throws what plan_vertices and plan_refit throw.
+// `refits`: whether frames may be refitted; `keeps_sorted`: so that what the sort of instances leaves is not
+// used for that. Throws what plan_vertices and plan_refit throw.
 MovingInstances plan_moving_instances(Layout& layout, const Scene& scene, InstancePlan& plan, bool refits,
-                                      std::uint32_t max_turns);
+                                      std::uint32_t max_turns, bool keeps_sorted = false);
 InstancesTold plan_instances_told(Layout& layout, const Scene& scene, const MovingInstances& moving);
 InstancesLeft plan_instances_left(Layout& layout, const InstancePlan& plan, const MovingInstances& moving);
 

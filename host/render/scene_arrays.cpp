@@ -1,6 +1,8 @@
 #include "render/scene_arrays.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "scene/instances.h"
 
@@ -38,6 +40,29 @@ SceneArrays scene_arrays(const Scene& scene) {
     arrays.transforms.push_back(rows_of(instance.transform));
   }
   return arrays;
+}
+
+Aabb box_of(std::span<const Triangle> triangles) {
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  Aabb box{vec3(infinity), vec3(-infinity)};
+  const auto is_finite = [](vec3 v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+  };
+  for (const Triangle& triangle : triangles) {
+    if (!is_finite(triangle.a) || !is_finite(triangle.b) || !is_finite(triangle.c)) continue;
+    for (const vec3& corner : {triangle.a, triangle.b, triangle.c}) {
+      for (int axis = 0; axis < 3; ++axis) {
+        box.box_min[axis] = std::min(box.box_min[axis], corner[axis]);
+        box.box_max[axis] = std::max(box.box_max[axis], corner[axis]);
+      }
+    }
+  }
+  return box.box_min.x <= box.box_max.x ? box : Aabb{vec3(0), vec3(0)};
+}
+
+Aabb box_of_scene(const Scene& scene, const SceneArrays& arrays) {
+  if (scene.instances.empty()) return box_of(arrays.triangles);
+  return box_of(scene_arrays(boxes_of_instances(scene)).triangles);
 }
 
 }  // namespace coppice

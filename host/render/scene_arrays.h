@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "interface/instances.h"
@@ -19,8 +20,18 @@ struct SceneArrays {
   std::vector<InstanceTransform> transforms;
 
   std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(triangles.size()); }
+  // Of the tree over the scene: instances, where there are two levels.
+  std::uint32_t primitive_count() const {
+    return mesh_index.empty() ? triangle_count() : static_cast<std::uint32_t>(mesh_index.size());
+  }
 };
 
 SceneArrays scene_arrays(const Scene& scene);
+
+// Of the active triangles; zeroes where there are none.
+Aabb box_of(std::span<const Triangle> triangles);
+
+// The same of a scene, or of the boxes of its instances.
+Aabb box_of_scene(const Scene& scene, const SceneArrays& arrays);
 
 }  // namespace coppice

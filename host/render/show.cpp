@@ -54,8 +54,8 @@ ShowSpan depths_of(const Film& film, const Aabb& box) {
 std::uint32_t steps_shown(Walk walk) { return is_wide(walk) ? 64 : 128; }
 
 std::uint32_t kernel_view(Show show) {
-  static constexpr std::uint32_t views[] = {SHOW_COLOR, SHOW_STEPS, SHOW_NORMALS, SHOW_DEPTH,
-                                            SHOW_IDS,   SHOW_RANKS, SHOW_GROUPS,  SHOW_COLOR};
+  static constexpr std::uint32_t views[] = {SHOW_COLOR, SHOW_STEPS,  SHOW_NORMALS, SHOW_DEPTH,    SHOW_IDS,
+                                            SHOW_RANKS, SHOW_GROUPS, SHOW_COLOR,   SHOW_INSTANCES};
   return views[static_cast<std::uint32_t>(show)];
 }
 
@@ -94,14 +94,14 @@ std::array<vec3, SHOW_MAP_COLOURS> colour_map(Show show) {
 }
 
 ShowSpan span_of(const ShowOptions& options, const Film& film, const Aabb& scene, Walk walk,
-                 std::uint32_t triangle_count) {
+                 std::uint32_t primitive_count) {
   switch (options.show) {
     case Show::steps:
       return {0, static_cast<float>(options.most_steps ? options.most_steps : steps_shown(walk))};
     case Show::depth:
       return depths_of(film, scene);
     case Show::morton:
-      return {0, static_cast<float>(triangle_count)};
+      return {0, static_cast<float>(primitive_count)};
     default:
       return {};
   }
@@ -110,24 +110,6 @@ ShowSpan span_of(const ShowOptions& options, const Film& film, const Aabb& scene
 ShowScale scale_of(const ShowSpan& span) {
   const float per_unit = static_cast<float>(SHOW_MAP_COLOURS) / (span.greatest - span.least);
   return {span.least, std::isfinite(per_unit) && per_unit > 0 ? per_unit : 0, 0, 0};
-}
-
-Aabb box_of(std::span<const Triangle> triangles) {
-  constexpr float infinity = std::numeric_limits<float>::infinity();
-  Aabb box{vec3(infinity), vec3(-infinity)};
-  const auto is_finite = [](vec3 v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-  };
-  for (const Triangle& triangle : triangles) {
-    if (!is_finite(triangle.a) || !is_finite(triangle.b) || !is_finite(triangle.c)) continue;
-    for (const vec3& corner : {triangle.a, triangle.b, triangle.c}) {
-      for (int axis = 0; axis < 3; ++axis) {
-        box.box_min[axis] = std::min(box.box_min[axis], corner[axis]);
-        box.box_max[axis] = std::max(box.box_max[axis], corner[axis]);
-      }
-    }
-  }
-  return box.box_min.x <= box.box_max.x ? box : Aabb{vec3(0), vec3(0)};
 }
 
 std::vector<uint> ranks_in(std::span<const uint> order, std::uint32_t triangle_count) {

@@ -21,12 +21,13 @@ enum class Show : std::uint32_t {
   ids,       // of triangles, a colour each
   morton,    // the order of triangles along the Morton curve
   clusters,  // which PLOC has after so many rounds, a colour each
-  boxes      // the scene, and wireframes of the tree's boxes, coloured by their level
+  boxes,     // the scene, and wireframes of the tree's boxes, coloured by their level
+  instances  // a colour each; of two levels the primitives of morton, clusters and boxes are these
 };
 
 // The name of each, in their order.
-inline constexpr std::string_view SHOW_NAMES[] = {"color", "steps",  "normals",  "depth",
-                                                  "ids",   "morton", "clusters", "boxes"};
+inline constexpr std::string_view SHOW_NAMES[] = {"color",  "steps",    "normals", "depth",    "ids",
+                                                  "morton", "clusters", "boxes",   "instances"};
 
 constexpr std::string_view name_of(Show show) { return SHOW_NAMES[static_cast<std::uint32_t>(show)]; }
 
@@ -58,13 +59,11 @@ struct ShowSpan {
   float least = 0, greatest = 0;
 };
 
-// Of steps, of depths of the scene's box as the film sees it, or of places in the Morton order.
+// Of steps, of depths of the scene's box as the film sees it, or of places in the Morton order of so many
+// primitives.
 ShowSpan span_of(const ShowOptions& options, const Film& film, const Aabb& scene, Walk walk,
-                 std::uint32_t triangle_count);
+                 std::uint32_t primitive_count);
 ShowScale scale_of(const ShowSpan& span);
-
-// Of the active triangles.
-Aabb box_of(std::span<const Triangle> triangles);
 
 // Each triangle's place in the order; 0 for those that are not in it.
 std::vector<uint> ranks_in(std::span<const uint> order, std::uint32_t triangle_count);

@@ -114,6 +114,12 @@ float phase_of(const Deformation& deformation, double seconds) {
   return static_cast<float>(cycles - std::floor(cycles));
 }
 
+std::optional<SceneCycle> cycle_of(const Scene& scene) {
+  if (scene.motion) return SceneCycle{scene.motion->duration_seconds, scene.motion->frames_per_second};
+  if (scene.swarm) return SceneCycle{scene.swarm->seconds, scene.swarm->frames_per_second};
+  return {};
+}
+
 Motion motion_of(const Scene& scene) {
   if (scene.motion) return *scene.motion;
   Motion still;

@@ -110,6 +110,12 @@ struct Motion {
   double frames_per_second = 30;  // that the scene asks for; positive
 };
 
+// A cycle of what moves in a scene, a swarm of instances too; none where nothing does.
+struct SceneCycle {
+  double seconds, frames_per_second;
+};
+std::optional<SceneCycle> cycle_of(const Scene& scene);
+
 // Of a scene without motion, too: one joint that stands still.
 Motion motion_of(const Scene& scene);
 

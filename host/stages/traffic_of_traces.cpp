@@ -83,13 +83,13 @@ Bytes instance_boxes(const InstanceBoxesArgs& a, const RunCounts&) {
 
 // Of each hit the way to the triangle at least: the instance and its transform.
 Bytes trace_instances(const TraceInstancesArgs& a, const RunCounts& counts) {
-  return a.ray_count * (ray_and_hit + 4) + share(pairs_of(counts), a.ray_count, counts) +
+  return a.ray_count * (ray_and_hit + 4 + kept_steps(a)) + share(pairs_of(counts), a.ray_count, counts) +
          share(counts.hits, a.ray_count, counts) *
              (sizeof(PlacedInstance) + sizeof(InstanceTransform) + sizeof(Triangle));
 }
 
 Bytes place_hits(const PlaceHitsArgs& a, const RunCounts& counts) {
-  return a.ray_count * (sizeof(Hit) + 4 + sizeof(Triangle) + 4) +
+  return a.ray_count * (sizeof(Hit) + 4 + sizeof(Triangle) + 4 + (a.primitives.value ? 4 : 0)) +
          share(counts.hits, a.ray_count, counts) *
              (4 + sizeof(uint) + sizeof(InstanceTransform) + sizeof(Triangle) + 4);
 }
@@ -115,6 +115,9 @@ Bytes show(const ShowArgs& a, const RunCounts& counts) {
   Bytes of_hit = 0;
   if (a.view == SHOW_NORMALS) of_hit = sizeof(Triangle);
   if (a.view == SHOW_DEPTH || a.view == SHOW_RANKS || a.view == SHOW_GROUPS) of_hit = sizeof(uint);
+  const bool names_instances = a.view == SHOW_RANKS || a.view == SHOW_GROUPS || a.view == SHOW_INSTANCES;
+  if (a.hit_instances.value && names_instances) of_hit += sizeof(uint);
+  if (a.hit_instances.value && a.view == SHOW_IDS) of_hit += 2 * sizeof(uint);
   return a.ray_count * (sizeof(uint) + radiance) + share(counts.hits, a.ray_count, counts) * of_hit;
 }
 

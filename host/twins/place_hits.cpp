@@ -6,7 +6,9 @@ void place_hits(const PlaceHitsArgs& args) {
   for (uint i = 0; i < args.ray_count; ++i) {
     args.triangles[i] = {vec3(0), vec3(0), vec3(0)};
     args.material_index[i] = 0;
-    if (args.hits[i].triangle == NO_TRIANGLE) continue;
+    const bool is_hit = args.hits[i].triangle != NO_TRIANGLE;
+    if (args.primitives.value) args.primitives[i] = is_hit ? args.hits[i].triangle : 0;
+    if (!is_hit) continue;
     const uint instance = args.hit_instances[i];
     const MeshRange& mesh = args.meshes[args.placed[instance].mesh];
     const std::size_t own = std::size_t{mesh.first_triangle} + args.hits[i].triangle;

@@ -40,6 +40,11 @@ void note(ShowRange& range, uint value) {
   range.greatest = std::max(range.greatest, value);
 }
 
+// Of the tree that is shown: a triangle, or an instance.
+uint primitive_of(const ShowArgs& args, uint i) {
+  return args.hit_instances.value ? args.hit_instances[i] : args.hits[i].triangle;
+}
+
 vec3 of_ray(const ShowArgs& args, uint i) {
   const Hit& hit = args.hits[i];
   if (args.view == SHOW_STEPS) {
@@ -54,11 +59,14 @@ vec3 of_ray(const ShowArgs& args, uint i) {
       note(args.range[0], std::bit_cast<uint>(hit.t));
       return of_map(args, hit.t);
     case SHOW_RANKS:
-      return of_map(args, static_cast<float>(args.primitive_values[hit.triangle]));
+      return of_map(args, static_cast<float>(args.primitive_values[primitive_of(args, i)]));
     case SHOW_GROUPS:
-      return of_id(args.primitive_values[hit.triangle]);
+      return of_id(args.primitive_values[primitive_of(args, i)]);
+    case SHOW_INSTANCES:
+      return of_id(args.hit_instances.value ? args.hit_instances[i] : 0);
     default:
-      return of_id(hit.triangle);
+      if (!args.hit_instances.value) return of_id(hit.triangle);
+      return of_id(args.hit_instances[i] * SHOW_INSTANCE_STRIDE + args.hit_primitives[i]);
   }
 }
 

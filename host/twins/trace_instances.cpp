@@ -131,9 +131,10 @@ class InstanceTrace {
   Found& found_;
 };
 
-void trace(const TraceInstancesArgs& args, uint i) {
+// Steps.
+std::uint64_t trace(const TraceInstancesArgs& args, uint i) {
   TraceRay ray(args.rays[i]);
-  if (!ray.is_sound) return;
+  if (!ray.is_sound) return 0;
   ray.approach(args.nodes[0].box_min, args.nodes[0].box_max);
   Hit& so_far = args.hits[i];
   uint& instance = args.hit_instances[i];
@@ -141,12 +142,12 @@ void trace(const TraceInstancesArgs& args, uint i) {
   Found found = before;
   InstanceTrace walk(args, ray, found);
   walk.run();
-  count_into(args.counters[0].steps, walk.steps);
-  if (found.instance == before.instance && found.hit.triangle == before.hit.triangle) return;
-  if (std::isinf(ray.given_t(found.hit.t))) return;
+  if (found.instance == before.instance && found.hit.triangle == before.hit.triangle) return walk.steps;
+  if (std::isinf(ray.given_t(found.hit.t))) return walk.steps;
   so_far.triangle = NO_TRIANGLE;
   ray.keep(found.hit, so_far);
   instance = found.instance;
+  return walk.steps;
 }
 
 }  // namespace
@@ -159,7 +160,9 @@ void trace_instances(const TraceInstancesArgs& args) {
   }
   for (uint i = 0; i < args.ray_count; ++i) {
     if (args.hits[i].triangle == NO_TRIANGLE) args.hit_instances[i] = NO_INSTANCE;
-    if (!empty) trace(args, i);
+    const std::uint64_t steps = empty ? 0 : trace(args, i);
+    count_into(args.counters[0].steps, steps);
+    keep_ray_steps(args, i, static_cast<uint>(steps));
     count_into(args.counters[0].rays, 1);
     count_into(args.counters[0].hits, args.hits[i].triangle != NO_TRIANGLE);
   }

@@ -92,7 +92,9 @@ void Viewer::scene_pane() {
   }
   if (opened_) {
     ImGui::TextDisabled("%u triangles%s", opened_->arrays.triangle_count(),
-                        opened_->scene.motion ? ", moving" : "");
+                        cycle_of(opened_->scene) ? ", moving" : "");
+    if (!opened_->scene.instances.empty())
+      ImGui::TextDisabled("in %zu instances of meshes", opened_->scene.instances.size());
   }
   ImGui::Separator();
   choose("builder", asked_.builder.name, all_builders());
@@ -143,7 +145,7 @@ void Viewer::view_controls() {
 }
 
 void Viewer::time_controls() {
-  if (!opened_ || !opened_->scene.motion) return;
+  if (!opened_ || !cycle_of(opened_->scene)) return;
   ImGui::Separator();
   if (frames_ && !frames_->can_move()) {
     ImGui::TextDisabled("it moves with builders gpu-...");

@@ -17,7 +17,7 @@ constexpr const char* help_text[][2] = {
     {"F", "fly or orbit"},
     {"R", "the camera of the beginning"},
     {"B", "build the tree anew once"},
-    {"1 to 8", "color, steps, normals, depth, ids, morton, clusters, boxes"},
+    {"1 to 9", "color, steps, normals, depth, ids, morton, clusters, boxes, instances"},
     {"space", "play or pause"},
     {". ,", "a step forward, back"},
     {"P", "write the picture as PNG"},

@@ -17,9 +17,10 @@ namespace {
 // Kernels that a reader takes for one; else a kernel is a group of its own.
 std::string group_of(std::string_view stage) {
   constexpr std::pair<std::string_view, const char*> prefixes[] = {
-      {"vertex_", "vertices"}, {"gather_", "bounds"}, {"primitive_", "bounds"}, {"sort_", "sort"},
-      {"ploc_", "PLOC"},       {"hploc_", "H-PLOC"},  {"wide_", "wide"},        {"trace_", "trace"},
-      {"morton_", "Morton"},   {"refit_", "refit"},   {"camera_", "camera"}};
+      {"vertex_", "vertices"},    {"gather_", "bounds"},  {"primitive_", "bounds"}, {"sort_", "sort"},
+      {"ploc_", "PLOC"},          {"hploc_", "H-PLOC"},   {"wide_", "wide"},        {"trace_", "trace"},
+      {"morton_", "Morton"},      {"refit_", "refit"},    {"camera_", "camera"},    {"move_", "instances"},
+      {"instance_", "instances"}, {"copy_", "instances"}, {"place_", "instances"}};
   for (const auto& [prefix, name] : prefixes) {
     if (stage.starts_with(prefix)) return name;
   }
@@ -53,14 +54,23 @@ std::vector<std::string> mark_groups(std::vector<Step>& steps) {
 
 }  // namespace
 
+bool keeps_instances(const BuilderChoice& builder, const WalkChoice& walk) {
+  return builder.on_device() && !walk.any_wide && walk.walk.value_or(Walk::binary) == Walk::binary;
+}
+
 OpenedScene open_for_view(const SceneOptions& options, const BuilderChoice& builder) {
   OpenedScene opened;
   opened.options = options;
   opened.builder = builder;
-  check_room(options.spec, DeviceRoom{}, [](const std::string&) {});
-  opened.scene = open_scene(options.spec, options.up);
+  SceneOptions kept = options;
+  kept.keep_instances = true;
+  const auto silently = [](const std::string&) {};
+  opened.scene = open_scene_with_room(kept, nullptr, {}, silently);
+  opened.has_instances = !opened.scene.instances.empty();
+  if (opened.has_instances && !options.keep_instances)
+    opened.scene = open_scene_with_room(options, nullptr, {}, silently);
   opened.arrays = scene_arrays(opened.scene);
-  opened.box = box_of(opened.arrays.triangles);
+  opened.box = box_of_scene(opened.scene, opened.arrays);
   if (builder.on_device()) return opened;
   const auto start = std::chrono::steady_clock::now();
   const BuilderConfig config{.radius = builder.radius,
@@ -73,6 +83,19 @@ OpenedScene open_for_view(const SceneOptions& options, const BuilderChoice& buil
   return opened;
 }
 
+// The keys of the sort are kept for what shows its order.
+FramePlan ViewFrames::plan_instances_of(ViewFrames& frames, FrameOptions options) {
+  options.trace.walk = Walk::binary;
+  FramePlan plan = plan_frame(frames.layout_, frames.opened_.arrays, options);
+  const Scene& scene = frames.opened_.scene;
+  frames.instances_ =
+      plan_moving_instances(frames.layout_, scene, plan.levels->plan,
+                            frames.options_.update != Update::rebuild, options.trace.max_turns, true);
+  frames.instances_at_ = plan_instances_told(frames.layout_, scene, frames.instances_);
+  if (frames.instances_.top) frames.refit_ = frames.instances_.top->refit;
+  return plan;
+}
+
 FramePlan ViewFrames::plan_all(ViewFrames& frames, CheckedDevice& device) {
   const OpenedScene& opened = frames.opened_;
   FrameOptions options{.trace =
@@ -81,6 +104,7 @@ FramePlan ViewFrames::plan_all(ViewFrames& frames, CheckedDevice& device) {
   options.trace.show = kernel_view(frames.options_.show.show);
   if (frames.options_.builder.on_device()) {
     options.build = device.build_options(frames.options_.builder.build_options(frames.morton_bits_));
+    if (!opened.scene.instances.empty()) return plan_instances_of(frames, options);
     frames.vertices_ = plan_vertices(frames.layout_, frames.motion_, opened.arrays.triangle_count());
     frames.at_ = plan_motion(frames.layout_, frames.motion_);
   } else {
@@ -102,23 +126,56 @@ ViewFrames::ViewFrames(CheckedDevice& device, const OpenedScene& opened, const V
       plan_(plan_all(*this, device)),
       executor_(device.device(), layout_),
       chooser_(options.update) {
-  upload_frame(executor_, plan_.tree, plan_.trace, opened.arrays, Film{});
-  if (plan_.build) {
-    upload_vertices(executor_, vertices_, motion_, std::span<const uvec3>(opened.scene.indices));
-  } else {
-    upload_bvh(executor_, plan_.tree, opened.bvh);
-  }
+  upload_scene();
   record();
+}
+
+void ViewFrames::upload_scene() {
+  upload_frame(executor_, plan_, opened_.arrays, Film{});
+  if (plan_.levels) {
+    upload_moving_instances(executor_, instances_, opened_.scene, opened_.arrays);
+    Chain chain = executor_.chain();
+    append_meshes(chain, plan_.levels->plan, meshes_that_stand_still(opened_.scene));
+    if (!chain.steps().empty()) executor_.record(chain.steps()).submit_and_wait(piece_limit_seconds);
+  } else if (plan_.build) {
+    upload_vertices(executor_, vertices_, motion_, std::span<const uvec3>(opened_.scene.indices));
+  } else {
+    upload_bvh(executor_, plan_.tree, opened_.bvh);
+  }
+}
+
+// The tree over instances is built where they stand still, too, as that is asked for.
+void ViewFrames::append_update(Chain& chain, bool rebuilds) const {
+  if (!plan_.levels) {
+    append_vertices(chain, vertices_, at_, motion_);
+    return append_moving_tree(chain, vertices_, plan_, refit_ ? &*refit_ : nullptr, rebuilds);
+  }
+  const InstancePlan& instances = plan_.levels->plan;
+  if (!instances_.moves()) return append_top(chain, instances);
+  append_instance_places(chain, opened_.scene, instances, instances_, instances_at_);
+  append_instance_trees(chain, instances, instances_, rebuilds);
+}
+
+void ViewFrames::tell(double seconds) {
+  if (plan_.levels) {
+    tell_instances(executor_, instances_at_, opened_.scene, instances_, seconds);
+  } else if (plan_.build) {
+    upload_step(executor_, at_, motion_step(motion_, pose_at(motion_, seconds), seconds));
+  }
+}
+
+// Primitives of all trees that a refit has no leaves for.
+std::uint32_t ViewFrames::appeared() const {
+  std::uint32_t count = executor_.read(refit_->state)[0].appeared_count;
+  for (const RefitState& state : executor_.read(instances_.mesh_refits)) count += state.appeared_count;
+  return count;
 }
 
 // A tree of the host is there, and gets its wide nodes.
 void ViewFrames::record_tree(bool rebuilds, std::vector<std::string>& groups,
                              std::optional<Recorder>& recorder) {
   Chain chain = executor_.chain();
-  if (plan_.build) {
-    append_vertices(chain, vertices_, at_, motion_);
-    append_moving_tree(chain, vertices_, plan_, refit_ ? &*refit_ : nullptr, rebuilds);
-  }
+  if (plan_.build) append_update(chain, rebuilds);
   append_moving_wide(chain, plan_, rebuilds);
   groups = mark_groups(chain.steps());
   if (!chain.steps().empty()) recorder.emplace(executor_.record(chain.steps()));
@@ -128,7 +185,8 @@ void ViewFrames::record() {
   record_tree(true, tree_groups_, tree_recorder_);
   if (refit_) record_tree(false, refit_groups_, refit_recorder_);
   Chain trace = executor_.chain();
-  append_trace(trace, plan_.tree, plan_.trace);
+  TracePieces pieces = plan_.pieces(plan_.trace);
+  while (!pieces.done()) pieces.append(trace, ~std::uint64_t{0});
   trace_groups_ = mark_groups(trace.steps());
   trace_recorder_.emplace(executor_.record(trace.steps()));
 }
@@ -157,7 +215,7 @@ void ViewFrames::set_show(const ShowOptions& show) {
 }
 
 ShowSpan ViewFrames::span(const Film& film) const {
-  return span_of(options_.show, film, opened_.box, walk(), opened_.arrays.triangle_count());
+  return span_of(options_.show, film, opened_.box, walk(), opened_.arrays.primitive_count());
 }
 
 // The place of each triangle in the order of the last sort, or the cluster it was in.
@@ -167,13 +225,17 @@ void ViewFrames::upload_values() {
   if (slot.count == 0) return;
   std::vector<uint> values;
   if (options_.show.show == Show::morton) {
-    values = plan_.build ? ranks_in(executor_.read(plan_.build->values[0]), opened_.arrays.triangle_count())
+    values = plan_.build ? ranks_in(executor_.read(plan_.build->values[0]), opened_.arrays.primitive_count())
                          : shown_values(options_.show, opened_.arrays.triangles, morton_bits_, {});
   } else {
     const std::vector<Node> nodes = tree();
     std::vector<PlocRound> rounds;
     if (plan_.build && plan_.build->rounds.count > 0) rounds = executor_.read(plan_.build->rounds);
-    values = shown_values(options_.show, opened_.arrays.triangles, morton_bits_, {nodes, rounds});
+    std::vector<Triangle> boxes;
+    if (plan_.levels) boxes = corners_of(executor_.read(plan_.levels->plan.instance_boxes));
+    values = shown_values(options_.show,
+                          plan_.levels ? std::span<const Triangle>(boxes) : opened_.arrays.triangles,
+                          morton_bits_, {nodes, rounds});
   }
   executor_.upload(slot, std::span<const uint>(values));
 }
@@ -186,14 +248,14 @@ bool ViewFrames::make_tree(bool rebuilds, ViewedFrame& frame) {
     return true;
   }
   submit(*refit_recorder_, refit_groups_, frame);
-  frame.refitted = executor_.read(refit_->state)[0].appeared_count == 0;
+  frame.refitted = appeared() == 0;
   return frame.refitted;
 }
 
 bool ViewFrames::move_tree(double seconds, bool rebuild, ViewedFrame& frame) {
   const bool moved = can_move() && seconds_ != seconds, asked = rebuild && plan_.build;
   if (seconds_ && !moved && !asked) return true;
-  if (plan_.build) upload_step(executor_, at_, motion_step(motion_, pose_at(motion_, seconds), seconds));
+  tell(seconds);
   if (asked) chooser_ = UpdateChooser(options_.update);  // which begins with a build
   const bool refits = chooser_.next_refits() && refit_;
   const bool made = make_tree(!refits, frame);
@@ -211,8 +273,12 @@ ViewedFrame ViewFrames::draw(const Film& film, double seconds, bool rebuild) {
   executor_.upload(plan_.trace.film, std::span<const Film>(&film, 1));
   upload_show(executor_, plan_.trace.show, options_.show.show, span(film));
   submit(*trace_recorder_, trace_groups_, frame);
-  const BuildState state = executor_.read(plan_.tree.state)[0];
-  if (const std::string errors = describe_error_word(state.error_word); !errors.empty())
+  std::uint32_t error_word = executor_.read(plan_.tree.state)[0].error_word;
+  if (plan_.levels) {
+    for (const BuildState& state : executor_.read(plan_.levels->plan.mesh_states))
+      error_word |= state.error_word;
+  }
+  if (const std::string errors = describe_error_word(error_word); !errors.empty())
     throw DeviceError("the frame at second " + std::to_string(seconds) + ": " + errors);
   frame.counts = counts_of(executor_.read(plan_.trace.counters)[0]);
   if (frame.built || frame.refitted)

@@ -9,6 +9,7 @@
 #include "pipeline/checked_device.h"
 #include "pipeline/refit.h"
 #include "render/frame.h"
+#include "render/moving_instances.h"
 #include "render/moving_vertices.h"
 #include "render/show.h"
 #include "render/update_chooser.h"
@@ -25,8 +26,13 @@ struct OpenedScene {
   Aabb box;
   BuilderChoice builder{};  // with one of the host:
   Bvh bvh{};
-  double build_ms = 0;  // that it took
+  double build_ms = 0;         // that it took
+  bool has_instances = false;  // before they were flattened, where options do not keep them
 };
+
+// Whether instances are seen as such, through two levels: by builders of the device, and where the choice is
+// no wide tree. Else they are flattened.
+bool keeps_instances(const BuilderChoice& builder, const WalkChoice& walk);
 
 // Reads and makes all of it; with a builder of the device no tree. Throws as open_scene does.
 OpenedScene open_for_view(const SceneOptions& options, const BuilderChoice& builder);
@@ -74,7 +80,7 @@ class ViewFrames {
   // What is seen of PLOC's rounds from the next frame on, or of the tree's levels.
   void set_show(const ShowOptions& show);
 
-  bool can_move() const { return opened_.scene.motion && plan_.build.has_value(); }
+  bool can_move() const { return cycle_of(opened_.scene) && plan_.build.has_value(); }
   Walk walk() const { return plan_.trace.options.walk; }
   ShowSpan span(const Film& film) const;
 
@@ -91,10 +97,15 @@ class ViewFrames {
   const std::vector<SlotListing>& slots() const { return layout_.slots(); }
 
  private:
+  void upload_scene();
+  void append_update(Chain& chain, bool rebuilds) const;
+  void tell(double seconds);
+  std::uint32_t appeared() const;
   void record_tree(bool rebuilds, std::vector<std::string>& groups, std::optional<Recorder>& recorder);
   // False where it was refitted in vain, and then built.
   bool move_tree(double seconds, bool rebuild, ViewedFrame& frame);
   bool make_tree(bool rebuilds, ViewedFrame& frame);
+  static FramePlan plan_instances_of(ViewFrames& frames, FrameOptions options);
   static FramePlan plan_all(ViewFrames& frames, CheckedDevice& device);
   void record();
   void upload_values();
@@ -107,6 +118,8 @@ class ViewFrames {
   Layout layout_;
   MovingVertices vertices_;
   MotionSlots at_;
+  MovingInstances instances_;  // of a scene with instances, in the place of the two above
+  InstancesTold instances_at_;
   std::optional<RefitPlan> refit_;  // as what stands above, planned with plan_
   FramePlan plan_;
   GpuExecutor executor_;

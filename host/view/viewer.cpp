@@ -124,7 +124,7 @@ void Viewer::turn() {
   last_turn_ = now;
   take_scene();
   if ((opened_ || presented_ > 0) &&
-      (!same_scene(asked_, shown_) ||
+      (!same_scene(asked_, shown_) || wants_other_levels() ||
        (!same_tree(asked_, shown_) && !(asked_.builder.on_device() && shown_.builder.on_device()))))
     start_scene();
   remake_frames();
@@ -145,7 +145,14 @@ void Viewer::turn() {
 void Viewer::start_scene() {
   shown_.scene = asked_.scene;
   shown_.builder = asked_.builder;
+  asked_.scene.keep_instances = shown_.scene.keep_instances = keeps_instances(asked_.builder, asked_.walk);
   job_.start(asked_.scene, asked_.builder);
+}
+
+// Whether the scene is to be opened again, as its instances are flattened, or are to be.
+bool Viewer::wants_other_levels() const {
+  return opened_ && opened_->has_instances && !job_.is_under_way() &&
+         opened_->options.keep_instances != keeps_instances(asked_.builder, asked_.walk);
 }
 
 void Viewer::take_scene() {
@@ -171,7 +178,7 @@ void Viewer::take_scene() {
   camera_.reset();
   seconds_ = 0;
   say(format("scene %s: %u triangles%s", shell_word(opened_->options.spec).c_str(),
-             opened_->arrays.triangle_count(), opened_->scene.motion ? ", moving" : ""));
+             opened_->arrays.triangle_count(), cycle_of(opened_->scene) ? ", moving" : ""));
 }
 
 // For another size, builder, tracer or view than those of the last picture.

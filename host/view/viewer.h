@@ -80,6 +80,7 @@ class Viewer {
   void wait_for_events();
   void take_scene();
   void start_scene();
+  bool wants_other_levels() const;
   void remake_frames();
   void make_frames(std::uint32_t width, std::uint32_t height);
   void move_camera(double seconds);

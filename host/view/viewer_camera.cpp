@@ -91,13 +91,13 @@ Film Viewer::film_at_time() const {
 }
 
 double Viewer::frames_per_second() const {
-  const Motion* const motion = opened_ ? opened_->scene.motion.get() : nullptr;
-  return motion ? motion->frames_per_second : 30;
+  const auto cycle = opened_ ? cycle_of(opened_->scene) : std::nullopt;
+  return cycle ? cycle->frames_per_second : 30;
 }
 
 double Viewer::scene_duration() const {
-  const Motion* const motion = opened_ ? opened_->scene.motion.get() : nullptr;
-  return motion ? motion->duration_seconds : 1;
+  const auto cycle = opened_ ? cycle_of(opened_->scene) : std::nullopt;
+  return cycle ? cycle->seconds : 1;
 }
 
 }  // namespace coppice

@@ -79,7 +79,7 @@ void Viewer::on_key(int key, int) {
       panes_ = !panes_;
       break;
     default:
-      if (key >= GLFW_KEY_1 && key <= GLFW_KEY_8) asked_.show.show = static_cast<Show>(key - GLFW_KEY_1);
+      if (key >= GLFW_KEY_1 && key <= GLFW_KEY_9) asked_.show.show = static_cast<Show>(key - GLFW_KEY_1);
       break;
   }
 }

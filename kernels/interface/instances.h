@@ -89,6 +89,7 @@ struct TraceInstancesArgs {
   TraceCountersBuffer counters;
   BuildStateBuffer state;         // of the tree over the instances
   READS(UintBuffer) mesh_height;  // with the height of that tree more than the stack: ERROR_TREE_TOO_DEEP
+  UintBuffer ray_steps;           // one a ray, where the constant counts_rays says so; else null
   uint ray_count;
   uint stack_entries;
 };
@@ -105,6 +106,7 @@ struct PlaceHitsArgs {
   HitBuffer hits;                    // ray_count; misses stay as they are
   TriangleBuffer triangles;          // out: ray_count
   UintBuffer material_index;         // out: ray_count
+  UintBuffer primitives;             // out: ray_count, the triangle in its mesh; of a miss 0; null: not wanted
   uint ray_count;
   uint padding;
 };
@@ -113,6 +115,7 @@ struct PlaceHitsArgs {
 struct TraceInstancesConstants {
   uint max_turns;  // of the loop, as in TraceClosestConstants
   uint stack_entries;
+  uint counts_rays;  // 1: the steps of each ray are kept, too
 };
 
 INTERFACE_END

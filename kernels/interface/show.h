@@ -13,6 +13,10 @@ const uint SHOW_DEPTH = 3;    // along the line of sight, through the map
 const uint SHOW_IDS = 4;      // of primitives, a colour each
 const uint SHOW_RANKS = 5;    // the word of the primitive, through the map
 const uint SHOW_GROUPS = 6;   // the word of the primitive, a colour each
+const uint SHOW_INSTANCES = 7;  // a colour each; one for all where there are none
+// Of two levels the primitives of SHOW_RANKS and SHOW_GROUPS are instances, and SHOW_IDS tells triangles of
+// other instances apart.
+const uint SHOW_INSTANCE_STRIDE = 2654435761u;  // of the numbers of triangles from instance to instance
 
 const uint SHOW_MAP_COLOURS = 256;
 const float SHOW_NOTHING = 0.0078125;  // each channel, where nothing is hit
@@ -41,6 +45,8 @@ struct ShowArgs {
   READS(HitBuffer) hits;
   READS(UintBuffer) ray_steps;         // one a ray; SHOW_STEPS only, else null
   READS(UintBuffer) primitive_values;  // one a primitive; SHOW_RANKS and SHOW_GROUPS only
+  READS(UintBuffer) hit_instances;     // one a ray; null: one level
+  READS(UintBuffer) hit_primitives;    // one a ray; SHOW_IDS of two levels only, else null
   READS(Vec3Buffer) colour_map;        // SHOW_MAP_COLOURS, linear RGB
   READS(ShowScaleBuffer) scale;
   ShowRangeBuffer range;
