@@ -157,6 +157,39 @@ TEST_F(SelfCheck, PassesWithAllThatTheLibraryDoes) {
   EXPECT_TRUE(check_device(like_a_gpu, library_use()));
 }
 
+DeviceUse use_of_what_moves() {
+  DeviceUse use;
+  use.vertices = use.instances = true;
+  return use;
+}
+
+TEST_F(SelfCheck, PassesWithVerticesAndInstancesThatMove) {
+  for (const DeviceBuilder builder : {DeviceBuilder::ploc, DeviceBuilder::hploc}) {
+    DeviceUse use = use_of_what_moves();
+    use.build.builder = builder;
+    EXPECT_TRUE(check_device(test_device(), use));
+  }
+  Device like_a_gpu({"", false, true});
+  EXPECT_TRUE(check_device(like_a_gpu, use_of_what_moves()));
+}
+
+// Every stage of these, where its last workgroup does not come.
+TEST_F(SelfCheck, RefusesADeviceByWhatMoves) {
+  const std::pair<const char*, const char*> stages[] = {
+      {"vertex_sequence", "moves vertices wrong"}, {"vertex_morph", "moves vertices wrong"},
+      {"vertex_deform", "moves vertices wrong"},   {"vertex_pose", "moves vertices wrong"},
+      {"move_instances", "instances wrong"},       {"instance_boxes", "instances wrong"},
+      {"trace_instances", "finds wrong hits"},     {"place_hits", "instances wrong"}};
+  for (const auto& [stage, wrong] : stages) {
+    const Fault all_but_one = [name = stage](std::vector<Step>& steps) {
+      for (Step& step : steps) {
+        if (is_stage(step, name)) --dispatch_of(step)->groups.x;
+      }
+    };
+    EXPECT_TRUE(says(refusal(use_of_what_moves(), all_but_one), wrong)) << stage;
+  }
+}
+
 // Every stage that only the library runs, where it does half of its work.
 TEST_F(SelfCheck, RefusesADeviceByWhatTheLibraryDoes) {
   const std::pair<const char*, const char*> stages[] = {{"wide_collapse_rest", "computes a wrong tree"},

@@ -192,8 +192,10 @@ class AnimateCommand : public Command {
     DeviceUse use{.build = builder_.least_build_options(),
                   .triangle_count = static_cast<std::uint32_t>(scene.indices.size()),
                   .refits = update_ != Update::rebuild,
-                  .inputs = true};
-    use.traces = {picture_.trace};
+                  .inputs = true,
+                  .vertices = scene.motion != nullptr,
+                  .instances = !scene.instances.empty()};
+    if (!use.instances) use.traces = {picture_.trace};
     return use;
   }
 

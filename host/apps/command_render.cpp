@@ -118,8 +118,9 @@ class RenderCommand : public Command {
     DeviceUse use{.builds = builder_.on_device() != nullptr,
                   .build = builder_.least_build_options(),
                   .traces = {},
-                  .triangle_count = static_cast<std::uint32_t>(scene.indices.size())};
-    if (traces_on_device()) use.traces.push_back(picture_.trace);
+                  .triangle_count = static_cast<std::uint32_t>(scene.indices.size()),
+                  .instances = !scene.instances.empty()};
+    if (traces_on_device() && !use.instances) use.traces.push_back(picture_.trace);
     return use;
   }
 

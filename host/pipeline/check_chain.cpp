@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "pipeline/batch.h"
+#include "pipeline/check_moving.h"
 #include "pipeline/refit.h"
 #include "pipeline/scan_plan.h"
 #include "pipeline/trace_any.h"
@@ -104,6 +105,8 @@ class Check {
     for (const TraceOptions& trace : use.traces) add_trace(trace);
     chain_.compare(tree_.state, "leaves another error word");
     if (use.inputs) add_inputs();
+    if (use.vertices) add_vertex_check(chain_);
+    if (use.instances) add_instance_check(chain_, options_, max_turns_);
     if (use.batches) add_batch();
     if (use.sorts) add_sort();
     if (use.scans) add_scan();

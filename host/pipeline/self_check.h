@@ -18,6 +18,8 @@ struct DeviceUse {
   bool wide = false;                   // the tree that is built is converted, too, whoever walks it
   bool refits = false;                 // of trees over triangles that move
   bool inputs = false;                 // vertices, indices, transforms and boxes
+  bool vertices = false;               // that move
+  bool instances = false;              // in two levels
   bool batches = false;                // of small trees
   bool sorts = false;                  // in place, see sorted_in_place()
   bool sorts_values = false;           // beside the keys

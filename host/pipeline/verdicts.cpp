@@ -80,7 +80,7 @@ std::string line_of(const DeviceUse& use) {
          << trace.stack_entries << ':' << trace.triangle_test << ':' << trace.box_test;
   }
   text << ";others:" << use.wide << use.refits << use.inputs << use.batches << use.sorts << use.sorts_values
-       << use.scans << use.every_ray;
+       << use.scans << use.every_ray << use.vertices << use.instances;
   return text.str();
 }
 

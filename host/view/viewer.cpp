@@ -227,7 +227,10 @@ void Viewer::make_frames(std::uint32_t width, std::uint32_t height) {
   DeviceUse use{.builds = options.builder.on_device() != nullptr,
                 .traces = {device_->picture_options(options.trace, opened_->arrays.triangle_count())},
                 .refits = asked_.update != Update::rebuild,
-                .inputs = true};
+                .inputs = true,
+                .vertices = opened_->scene.motion != nullptr,
+                .instances = !opened_->scene.instances.empty()};
+  if (use.instances) use.traces.clear();
   use.build = device_->build_options(options.builder.least_build_options());
   kept_check_device(device_->device(), use);
   frames_ = std::make_unique<ViewFrames>(*device_, *opened_, options);
