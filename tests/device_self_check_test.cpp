@@ -159,6 +159,7 @@ TEST_F(SelfCheck, PassesWithAllThatTheLibraryDoes) {
 
 DeviceUse use_of_what_moves() {
   DeviceUse use;
+  use.builds = false;
   use.vertices = use.instances = true;
   return use;
 }

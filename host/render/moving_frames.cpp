@@ -163,7 +163,7 @@ void MovingFrames::append_picture(Chain& chain, const FrameSlots& slots) const {
 
 std::vector<Step> MovingFrames::steps(bool rebuilds) const {
   Chain chain = executor_.chain();
-  append(chain, slots_[(next_slot_ + slots_.size() - 1) % slots_.size()], rebuilds);
+  append(chain, last_slots(), rebuilds);
   return std::move(chain.steps());
 }
 
@@ -172,7 +172,7 @@ std::vector<MovingFrames::Part> MovingFrames::parts() const {
   const InstancePlan& plan = plan_.levels->plan;
   std::vector<Part> parts;
   Chain chain = executor_.chain();
-  append_places(chain, slots_.front().told);
+  append_places(chain, last_slots().told);
   for (const MovingInstances::Mesh& mesh : instances_.meshes) {
     append_mesh_tree(chain, plan, mesh, true, may_refit());
     parts.push_back({std::move(chain.steps()), mesh_plan(plan, mesh.mesh)});
@@ -180,7 +180,7 @@ std::vector<MovingFrames::Part> MovingFrames::parts() const {
   }
   append_top_tree(chain, plan, instances_, true);
   if (options_.tree_cost) append_tree_cost(chain, plan_.tree, refit_);
-  append_picture(chain, slots_.front());
+  append_picture(chain, last_slots());
   parts.push_back({std::move(chain.steps()), *plan_.build});
   return parts;
 }

@@ -77,7 +77,7 @@ class MovingFrames {
   GpuExecutor& executor() { return executor_; }
   std::vector<Step> steps(bool rebuilds = true) const;
 
-  // The steps of a frame that builds, in one part for each tree that it builds.
+  // The same of a frame that builds, in one part for each tree that it builds.
   struct Part {
     std::vector<Step> steps;
     BuildPlan build;
@@ -113,6 +113,7 @@ class MovingFrames {
   void append_places(Chain& chain, const Told& told) const;
   void append_update(Chain& chain, bool rebuilds) const;
   void append_picture(Chain& chain, const FrameSlots& slots) const;
+  const FrameSlots& last_slots() const { return slots_[(next_slot_ + slots_.size() - 1) % slots_.size()]; }
   void append_tree(Chain& chain, bool rebuilds) const;
   void upload_scene(const Scene& scene);
   void build_what_stands_still();
