@@ -131,7 +131,8 @@ TEST_F(ViewWindow, ShowsWhatRenderMakesFromWhereverOneLooks) {
 // Two levels, in every view.
 TEST_F(ViewWindow, ShowsInstancesAsRenderDoes) {
   OPEN_OR_SKIP(
-      "instances:90 --size 160x120 --pictures picture --no-panes --builder gpu-ploc --round 2 --paused");
+      "instances:90 --size 160x120 --pictures picture --no-panes --paused --builder gpu-ploc --show clusters "
+      "--round 2");
   int pictures = 0;
   for (const char* view : {"1", "2", "3", "4", "5", "6", "7", "8", "9"}) {
     key(view);

@@ -171,8 +171,10 @@ void ViewFrames::upload_values() {
   if (slot.count == 0) return;
   std::vector<uint> values;
   if (options_.show.show == Show::morton) {
-    values = plan_.build ? ranks_in(executor_.read(plan_.build->values[0]), opened_.arrays.primitive_count())
-                         : shown_values(options_.show, opened_.arrays.triangles, morton_bits_, {});
+    const std::uint32_t primitives = opened_.arrays.primitive_count();
+    values = plan_.build
+                 ? ranks_in(executor_.read(Slot<uint>{plan_.build->values[0].place, primitives}), primitives)
+                 : shown_values(options_.show, opened_.arrays.triangles, morton_bits_, {});
   } else {
     const std::vector<Node> nodes = tree();
     std::vector<PlocRound> rounds;
