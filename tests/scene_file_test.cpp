@@ -238,6 +238,40 @@ TEST_F(SceneFile, FilesBesideItAndSequences) {
   }
 }
 
+// A square whose second corner goes in beyond the diagonal along which it was cut; beside it a triangle.
+TEST_F(SceneFile, PolygonsOfASequenceAreCutAsThoseOfItsFirstFrame) {
+  const std::string rest = "v 1 1 0\nv 0 1 0\nv 5 0 0\n", faces = "f 1 2 3 4\nf 2 5 3\n";
+  write("f_0.obj", "v 0 0 0\nv 1 0 0\n" + rest + faces);
+  write("f_1.obj", "v 0 0 0\nv 0.2 0.6 0\n" + rest + "f -5 -4 -3 -2\nf 2/1 5/1 3/1\n");
+  const std::string head = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\n";
+  write("f_2.ply", head + "property float z\nelement face 2\nproperty list uchar int vertex_indices\n" +
+                       "end_header\n0 0 0\n0.1 0.8 0\n1 1 0\n0 1 0\n5 0 0\n4 0 1 2 3\n3 1 4 2\n");
+  const std::vector<glm::uvec3> cut = {{0, 1, 2}, {0, 2, 3}, {1, 4, 2}};
+  ASSERT_EQ(load_mesh_file(folder_ / "f_0.obj").indices, cut);
+  ASSERT_NE(load_mesh_file(folder_ / "f_1.obj").indices, cut);
+  ASSERT_NE(load_mesh_file(folder_ / "f_2.ply").indices, cut);
+  json file = {
+      {"meshes",
+       {{"s", {{"sequence", {{"files", {"f_0.obj", "f_1.obj", "f_2.ply"}}}}, {"frames_per_second", 1}}}}},
+      {"objects", {{{"mesh", "s"}}}}};
+  const Scene scene = load_scene_file(write("s.json", file.dump()));
+  EXPECT_EQ(scene.indices, cut);
+  expect_corner_at(scene, 1, 1, {0.2f, 0.6f, 0});
+  expect_corner_at(scene, 2, 1, {0.1f, 0.8f, 0});
+  // A face more or less, another corner, another order of faces or of corners, and corners in other faces.
+  for (const char* const other : {"f 1 2 3 4\n", "f 1 2 3 4\nf 2 5 4\n", "f 2 5 3\nf 1 2 3 4\n",
+                                  "f 2 3 4 1\nf 2 5 3\n", "f 1 2 3\nf 4 2 5 3\n"}) {
+    write("f_1.obj", "v 0 0 0\nv 0.2 0.6 0\n" + rest + other);
+    try {
+      load_scene_file(folder_ / "s.json");
+      ADD_FAILURE() << other;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("'f_1.obj' has other faces than 'f_0.obj'"), std::string::npos)
+          << error.what();
+    }
+  }
+}
+
 std::string anim_bytes(std::uint32_t magic, std::uint32_t frames) {
   std::string bytes = little_endian(magic) + little_endian(3) + little_endian(frames) + little_endian(1);
   for (std::uint32_t frame = 0; frame < frames; ++frame) {

@@ -44,6 +44,7 @@ Scene parse_obj(std::string_view text, const std::string& name, const FindMtl& f
     mesh = read_obj_mesh(text, name, scene.offset, reading, warnings);
     scene.positions = std::move(mesh.positions);
     scene.indices = std::move(mesh.triangles);
+    scene.face_digest = mesh.faces.value();
     const glm::dvec3 offset = reread < 2 ? find_offset(scene) : glm::dvec3{0};
     if (offset == glm::dvec3{0}) break;
     scene.offset += offset;

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 
+#include "scene/face_digest.h"
 #include "scene/input_error.h"
 #include "scene/obj_file.h"
 #include "scene/obj_offset.h"
@@ -242,9 +243,11 @@ class PlyReader {
   }
 
   void cut_polygons() {
-    std::size_t begin = 0;
+    std::size_t begin = 0, face = 0;
+    FaceDigest digest;
     for (const std::size_t end : ends_) {
       const std::span<const std::uint32_t> polygon(corners_.data() + begin, end - begin);
+      digest.add(face++, polygon);
       if (polygon.size() == 3) {
         scene_.indices.emplace_back(polygon[0], polygon[1], polygon[2]);
       } else if (!triangulate(scene_.positions, polygon, scene_.indices)) {
@@ -252,6 +255,7 @@ class PlyReader {
       }
       begin = end;
     }
+    scene_.face_digest = digest.value();
   }
 
   PlyHeader header_;

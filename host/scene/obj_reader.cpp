@@ -130,10 +130,12 @@ class Joining {
   void join_triangles() {
     std::vector<ObjFinding> crossing(parts_.size());
     std::vector<std::vector<ObjMesh::MaterialUse>> uses(parts_.size());
+    std::vector<FaceDigest> faces(parts_.size());
     mesh_.triangles.resize(end_.triangles);
-    for_each_part([&](std::size_t i) { cut_faces(i, crossing[i], uses[i]); });
+    for_each_part([&](std::size_t i) { faces[i] = cut_faces(i, crossing[i], uses[i]); });
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       end_.lines = places_[i].lines;
+      mesh_.faces.add(faces[i]);
       warn(ObjWarning::POLYGON_CROSSES, crossing[i],
            "polygon with edges that cross or go round twice, cut into triangles that may overlap");
       std::move(uses[i].begin(), uses[i].end(), std::back_inserter(mesh_.uses));
@@ -144,8 +146,9 @@ class Joining {
   }
 
   // A part's faces as triangles, and where its materials begin among them.
-  void cut_faces(std::size_t i, ObjFinding& crossing, std::vector<ObjMesh::MaterialUse>& uses) {
+  FaceDigest cut_faces(std::size_t i, ObjFinding& crossing, std::vector<ObjMesh::MaterialUse>& uses) {
     ObjPart& part = parts_[i];
+    FaceDigest digest;
     const Place& place = places_[i];
     for (const std::uint32_t at : part.relative) {
       part.corners[at] += static_cast<std::uint32_t>(place.vertices);
@@ -162,6 +165,7 @@ class Joining {
       begin_uses(face);
       const std::size_t end = part.face_ends[face];
       const std::uint32_t* const corners = part.corners.data() + begin;
+      digest.add(place.faces + face, {corners, end - begin});
       if (end - begin == 3) {
         mesh_.triangles[triangle++] = {corners[0], corners[1], corners[2]};
       } else {
@@ -176,6 +180,7 @@ class Joining {
       begin = end;
     }
     begin_uses(part.face_ends.size());
+    return digest;
   }
 
   void warn(ObjWarning kind, const ObjFinding& finding, const char* what) {

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scene/face_digest.h"
 #include "scene/obj_part.h"
 #include "scene/obj_warnings.h"
 #include "scene/scene.h"
@@ -24,6 +25,7 @@ struct ObjReading {
 struct ObjMesh {
   std::vector<glm::vec3> positions;
   std::vector<glm::uvec3> triangles;
+  FaceDigest faces;
   std::vector<ObjPart::Library> libraries;  // with lines of the file
   struct MaterialUse {
     std::size_t triangle;  // the first that has it

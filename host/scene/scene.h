@@ -87,6 +87,8 @@ struct Scene {
   std::optional<Swarm> swarm;                      // none: the instances stand still
   std::vector<Material> materials = {Material{}};  // never empty
   std::optional<Camera> camera;                    // absent: frame_scene chooses one
+  // Of the faces of an OBJ or PLY file, before they are cut into triangles (FaceDigest); 0 of others.
+  std::uint64_t face_digest = 0;
   DirectionalLight light;
   glm::vec3 ambient_light{0.35f};  // linear RGB, multiplies Material::diffuse
   // Null: nothing moves but a swarm. With instances it has no vertices: these are in InstancedMesh::motion.
