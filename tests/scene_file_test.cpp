@@ -5,8 +5,10 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "scene/input_error.h"
+#include "scene/keyframes.h"
 #include "scene/motion.h"
 #include "scene/scene_source.h"
 #include "support/gltf_text.h"
@@ -87,6 +89,18 @@ TEST(SceneFiles, KeyframesMoveObjectsAndWhatIsBelowThem) {
   expect_corner_at(turned, 0.5, 1, {0, -1, 0});
   EXPECT_EQ(turned.motion->duration_seconds, 12.5);
   EXPECT_EQ(turned.motion->frames_per_second, 24);
+}
+
+// Half a unit long, 60 degrees apart: a quarter of the way is 15 degrees, the speed always the same.
+TEST(SceneFiles, RotationsNeedNotBeUnitQuaternions) {
+  const double c = std::sqrt(0.75) / 2;
+  const Keyframes keyframes{
+      .is_rotation = true, .width = 4, .times = {0, 1}, .values = {0, 0, 0, 0.5, 0, 0, 0.25, c}};
+  for (const double part : {0.25, 0.5, 0.75}) {
+    double turned[4];
+    sample(keyframes, part, turned);
+    EXPECT_NEAR(std::atan2(turned[2], turned[3]), part * std::numbers::pi / 6, 1e-12);
+  }
 }
 
 // A cubic curve goes through its values, without a jump in speed.

@@ -7,9 +7,13 @@
 namespace coppice {
 namespace {
 
+glm::dquat unit_quaternion(std::span<const double> q) {
+  return glm::normalize(glm::dquat(q[3], q[0], q[1], q[2]));  // 0 becomes the identity
+}
+
+// Files round them: of (0, 0, 0.707, 0.707) the angle between two would be wrong.
 void slerp(std::span<const double> a, std::span<const double> b, double part, std::span<double> result) {
-  const glm::dquat turn =
-      glm::slerp(glm::dquat(a[3], a[0], a[1], a[2]), glm::dquat(b[3], b[0], b[1], b[2]), part);
+  const glm::dquat turn = glm::slerp(unit_quaternion(a), unit_quaternion(b), part);
   result[0] = turn.x;
   result[1] = turn.y;
   result[2] = turn.z;
