@@ -66,11 +66,14 @@ struct VulkanContext {
   std::uint32_t memory_type(std::uint32_t allowed, vk::MemoryPropertyFlags flags) const;
 };
 
-// Calls `action`; what Vulkan throws becomes a DeviceError that names the device.
+// Calls `action`; what Vulkan throws becomes a DeviceError that names the device, a DeviceLost where it is
+// gone.
 template <class Action>
 auto with_device_errors(const VulkanContext& context, Action action) {
   try {
     return action();
+  } catch (const vk::DeviceLostError&) {
+    throw DeviceLost(context.properties.name + ": the device was lost");
   } catch (const vk::SystemError& error) {
     throw DeviceError(context.properties.name + ": " + error.what());
   }

@@ -44,8 +44,9 @@ struct ViewReport {
 };
 Json to_json(const ViewReport& report);
 
-// Opens the window, and returns when it is closed. Throws InputError for a scene at the beginning that cannot
-// be opened, DeviceError where there is no display, no device that presents, or it fails, and Interrupted.
+// Opens the window, and returns when it is closed. A device that is lost is made anew, unless it is lost
+// again before it has shown a picture. Throws InputError for a scene at the beginning that cannot be opened,
+// DeviceError where there is no display, no device that presents, or it fails, and Interrupted.
 ViewReport run_view(const ViewRun& run, const Note& note);
 
 }  // namespace coppice

@@ -23,18 +23,8 @@ double seconds_between(ViewClock::time_point from, ViewClock::time_point to) {
   return std::chrono::duration<double>(to - from).count();
 }
 
-bool same_tree(const ViewSettings& a, const ViewSettings& b) {
-  return a.builder.name == b.builder.name && a.builder.radius == b.builder.radius &&
-         a.builder.morton_bits == b.builder.morton_bits && a.builder.leaf_size == b.builder.leaf_size &&
-         a.update == b.update;
-}
-
 bool same_scene(const ViewSettings& a, const ViewSettings& b) {
   return a.scene.spec == b.scene.spec && a.scene.up == b.scene.up;
-}
-
-bool same_show(const ShowOptions& a, const ShowOptions& b) {
-  return a.show == b.show && a.most_steps == b.most_steps && a.round == b.round && a.level == b.level;
 }
 
 // Of the last frames, however many there are.
@@ -46,6 +36,12 @@ void keep_time(std::vector<double>& times, double ms) {
 
 }  // namespace
 
+bool same_tree(const ViewSettings& a, const ViewSettings& b) {
+  return a.builder.name == b.builder.name && a.builder.radius == b.builder.radius &&
+         a.builder.morton_bits == b.builder.morton_bits && a.builder.leaf_size == b.builder.leaf_size &&
+         a.update == b.update;
+}
+
 Viewer::Viewer(const ViewRun& run, const Note& note)
     : run_(run),
       note_(note),
@@ -54,7 +50,7 @@ Viewer::Viewer(const ViewRun& run, const Note& note)
                .height = static_cast<int>(run.trace.height),
                .select = run.device.select,
                .validate = run.device.validate}),
-      screen_(with_input(window_)),
+      screen_(std::in_place, with_input(window_)),
       plays_(!run.paused),
       panes_(run.panes),
       typed_scene_(run.scene.spec) {
@@ -66,7 +62,10 @@ Viewer::Viewer(const ViewRun& run, const Note& note)
   camera_numbers_ = run.camera;
 }
 
-Viewer::~Viewer() { glfwSetWindowUserPointer(window_.handle(), nullptr); }
+Viewer::~Viewer() {
+  wait_for_device();
+  glfwSetWindowUserPointer(window_.handle(), nullptr);
+}
 
 void Viewer::say(const std::string& line) const {
   if (!run_.talks) return;
@@ -85,13 +84,16 @@ bool Viewer::goes_on() const {
   return run_.frames == 0 || presented_ < run_.frames;
 }
 
+bool Viewer::is_hidden() const {
+  const VkExtent2D size = window_.framebuffer();
+  return size.width == 0 || size.height == 0;
+}
+
 // Until something happens, where nothing goes on by itself.
 void Viewer::wait_for_events() {
-  const VkExtent2D size = window_.framebuffer();
-  const bool hidden = size.width == 0 || size.height == 0;
   const bool moves = frames_ && ((plays_ && frames_->can_move()) || asked_.rebuild || asked_.draws_always);
   const bool still = frames_ && !moves && !picture_old_;
-  if (hidden) {
+  if (is_hidden()) {
     glfwWaitEventsTimeout(0.1);
   } else if (still || !frames_) {
     glfwWaitEventsTimeout(still ? 0.25 : 0.02);
@@ -102,19 +104,19 @@ void Viewer::wait_for_events() {
 
 ViewReport Viewer::run() {
   const InterruptionGuard guard;
-  screen_.begin();
-  messages();
-  screen_.show({});  // the kernels may have to be compiled for the check
-  const DeviceUse use{.build = run_.builder.least_build_options(), .traces = {run_.trace}, .inputs = true};
-  device_.emplace(Device(window_.adopted(), run_.device.pipeline_folder, run_.device.log), run_.choices, use,
-                  note_);
+  check_device();
   start_scene();
   last_turn_ = ViewClock::now();
   while (goes_on()) {
     wait_for_events();
-    turn();
+    try {
+      turn();
+    } catch (const DeviceLost& lost) {
+      if (device_is_new_ || presented_ == 0) throw;  // it would be lost again
+      remake_device(lost.what());
+    }
   }
-  screen_.wait();
+  screen_->wait();
   return report();
 }
 
@@ -130,16 +132,22 @@ void Viewer::turn() {
   remake_frames();
   move_camera(std::min(passed, 0.1));
   move_time(std::min(passed, 0.5));
+  if (is_hidden()) return;
   draw_picture();
-  screen_.begin();
-  panes();
-  PicturePlace picture;
-  if (frames_) picture = {frames_->image_buffer(), frames_->image().place.offset, width_, height_};
-  if (!screen_.show(picture)) return;
-  if (!frames_) return;
+  if (!show_picture() || !frames_) return;
+  device_is_new_ = false;
   ++presented_;
   if (presented_ > 1) keep_time(frame_ms_, passed * 1000);
   answer_requests();
+}
+
+// With the panes over it.
+bool Viewer::show_picture() {
+  screen_->begin();
+  panes();
+  PicturePlace picture;
+  if (frames_) picture = {frames_->image_buffer(), frames_->image().place.offset, width_, height_};
+  return screen_->show(picture);
 }
 
 void Viewer::start_scene() {
@@ -167,8 +175,9 @@ void Viewer::take_scene() {
   }
   if (!result.opened) return;
   const bool is_new = !opened_ || opened_->options.spec != result.opened->options.spec;
-  screen_.wait();
+  screen_->wait();
   frames_.reset();
+  refused_ = {};
   opened_ = std::move(result.opened);
   complaint_.clear();
   for (const std::string& warning : opened_->scene.warnings)
@@ -179,67 +188,6 @@ void Viewer::take_scene() {
   seconds_ = 0;
   say(format("scene %s: %u triangles%s", shell_word(opened_->options.spec).c_str(),
              opened_->arrays.triangle_count(), cycle_of(opened_->scene) ? ", moving" : ""));
-}
-
-// For another size, builder, tracer or view than those of the last picture.
-void Viewer::remake_frames() {
-  const VkExtent2D size = window_.framebuffer();
-  if (!opened_ || size.width == 0 || size.height == 0) return;
-  const std::uint32_t width = std::max(size.width / asked_.divide, 1u);
-  const std::uint32_t height = std::max(size.height / asked_.divide, 1u);
-  const bool same_kernels = kernel_view(asked_.show.show) == kernel_view(shown_.show.show);
-  if (frames_ && width == width_ && height == height_ && same_tree(asked_, shown_) && same_kernels &&
-      asked_.walk.said == shown_.walk.said) {
-    if (!same_show(asked_.show, shown_.show)) {
-      frames_->set_show(asked_.show);
-      picture_old_ = true;
-    }
-    shown_ = asked_;
-    return;
-  }
-  if (job_.is_under_way() && !asked_.builder.on_device()) return;  // its tree is yet to come
-  const bool had_frames = frames_ != nullptr;
-  try {
-    make_frames(width, height);
-  } catch (const DeviceHung&) {
-    throw;
-  } catch (const std::exception& error) {  // too large for the device, or a view that the tracer has not
-    if (presented_ == 0) throw;
-    complain(error.what());
-    if (!had_frames) {  // a new scene, which is given up
-      opened_.reset();
-      return;
-    }
-    asked_ = shown_;
-    make_frames(width, height);
-  }
-  shown_ = asked_;
-}
-
-void Viewer::make_frames(std::uint32_t width, std::uint32_t height) {
-  screen_.wait();
-  frames_.reset();
-  ViewOptions options{
-      .builder = asked_.builder, .trace = run_.trace, .show = asked_.show, .update = asked_.update};
-  options.trace.width = width;
-  options.trace.height = height;
-  device_->set_walk(asked_.walk);
-  DeviceUse use{.builds = options.builder.on_device() != nullptr,
-                .traces = {device_->picture_options(options.trace, opened_->arrays.triangle_count())},
-                .refits = asked_.update != Update::rebuild,
-                .inputs = true,
-                .vertices = opened_->scene.motion != nullptr,
-                .instances = !opened_->scene.instances.empty()};
-  if (use.instances) use.traces.clear();
-  use.build = device_->build_options(options.builder.least_build_options());
-  kept_check_device(device_->device(), use);
-  frames_ = std::make_unique<ViewFrames>(*device_, *opened_, options);
-  if (width != width_ || height != height_) say(format("size %ux%u", width, height));
-  width_ = width;
-  height_ = height;
-  if (camera_numbers_.empty() && !camera_moves()) camera_numbers_ = camera_now();
-  picture_old_ = true;
-  statistics_ = {};
 }
 
 void Viewer::draw_picture() {

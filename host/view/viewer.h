@@ -31,6 +31,9 @@ struct ViewSettings {
   bool draws_always = false;        // also where nothing has changed
 };
 
+// Whether both are made into the same tree, of the same scene.
+bool same_tree(const ViewSettings& a, const ViewSettings& b);
+
 // What the panes tell of the last frames.
 struct ViewStatistics {
   struct Frame {
@@ -77,12 +80,12 @@ class Viewer {
   // viewer.cpp
   bool goes_on() const;
   void turn();
+  bool show_picture();
+  bool is_hidden() const;
   void wait_for_events();
   void take_scene();
   void start_scene();
   bool wants_other_levels() const;
-  void remake_frames();
-  void make_frames(std::uint32_t width, std::uint32_t height);
   void move_camera(double seconds);
   void move_time(double seconds);
   void draw_picture();
@@ -90,6 +93,14 @@ class Viewer {
   bool camera_moves() const;
   std::vector<double> camera_now() const;
   void note_frame(const ViewedFrame& frame, double ms);
+
+  // viewer_device.cpp
+  void check_device();
+  void wait_for_device() const;
+  void remake_device(const char* reason);
+  VkExtent2D wanted_size() const;  // of the picture
+  void remake_frames();
+  void make_frames(std::uint32_t width, std::uint32_t height);
 
   // viewer_answers.cpp
   void answer_requests();
@@ -119,7 +130,7 @@ class Viewer {
   ViewRun run_;
   Note note_;
   Window window_;
-  Screen screen_;
+  std::optional<Screen> screen_;  // there, but for when the device is made anew
   std::optional<CheckedDevice> device_;
   SceneJob job_;
   std::unique_ptr<OpenedScene> opened_;
@@ -130,6 +141,8 @@ class Viewer {
 
   ViewSettings asked_, shown_;
   std::uint32_t width_ = 0, height_ = 0;  // of the picture
+  VkExtent2D refused_{};                  // a size that there is no memory for: the picture keeps its own
+  bool device_is_new_ = false;            // it has not shown a picture since the last one was lost
   bool picture_old_ = true;
   Request request_;
   Drag turns_, pans_;

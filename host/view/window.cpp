@@ -97,8 +97,7 @@ void check_vulkan(VkResult result, const char* what) {
   const char* name = "";
   switch (result) {
     case VK_ERROR_DEVICE_LOST:
-      name = "the device was lost";
-      break;
+      throw DeviceLost(std::string(what) + ": the device was lost");
     case VK_ERROR_OUT_OF_DEVICE_MEMORY:
       name = "the device has no memory left";
       break;
@@ -238,6 +237,12 @@ void Window::make_device() {
   info.ppEnabledExtensionNames = &extension;
   check_vulkan(vkCreateDevice(physical, &info, nullptr, &device), "the device");
   vkGetDeviceQueue(device, queue_family, 0, &queue);
+}
+
+void Window::remake_device() {
+  vkDestroyDevice(device, nullptr);
+  device = VK_NULL_HANDLE;
+  make_device();
 }
 
 AdoptedDevice Window::adopted() const {

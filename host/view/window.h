@@ -12,7 +12,7 @@ struct GLFWwindow;
 
 namespace coppice {
 
-// Throws DeviceError, with the name of the result, unless it is success.
+// Throws DeviceError, with the name of the result, unless it is success; DeviceLost where it is that.
 void check_vulkan(VkResult result, const char* what);
 
 struct WindowOptions {
@@ -33,6 +33,9 @@ class Window {
 
   // Valid while the window lives.
   AdoptedDevice adopted() const;
+
+  // In place of one that was lost, after all that was made of it has been freed. Throws DeviceError.
+  void remake_device();
 
   GLFWwindow* handle() const { return window_; }
   VkExtent2D framebuffer() const;  // 0 where the window is not to be seen

@@ -1,5 +1,6 @@
 #include "support/desktop.h"
 
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -113,6 +114,32 @@ std::string Desktop::xdotool(const std::string& words) const {
   Process process(all, "xdotool", settings());
   EXPECT_EQ(process.wait(), 0) << "xdotool " << words << ": " << process.err();
   return process.out();
+}
+
+// The property of ICCCM 4.1.3.1, whose type no tool can set. Of Xlib there is what GLFW loads, too.
+void Desktop::set_minimised(const std::string& window, bool minimised) const {
+  void* const xlib = dlopen("libX11.so.6", RTLD_NOW | RTLD_LOCAL);
+  ASSERT_TRUE(xlib) << dlerror();
+  const auto function = [&]<class Function>(Function*& pointer, const char* name) {
+    pointer = reinterpret_cast<Function*>(dlsym(xlib, name));
+    ASSERT_TRUE(pointer) << name;
+  };
+  struct Display;
+  Display* (*open)(const char* name) = nullptr;
+  unsigned long (*atom_of)(Display*, const char* name, int only_if_exists) = nullptr;
+  int (*change)(Display*, unsigned long window, unsigned long property, unsigned long type, int bits,
+                int mode, const unsigned char* data, int count) = nullptr;
+  int (*close)(Display*) = nullptr;
+  function(open, "XOpenDisplay");
+  function(atom_of, "XInternAtom");
+  function(change, "XChangeProperty");
+  function(close, "XCloseDisplay");
+  Display* const display = open(display_.c_str());
+  ASSERT_TRUE(display) << display_;
+  const unsigned long state = atom_of(display, "WM_STATE", 0);
+  const long value[] = {minimised ? 3 : 1, 0};  // iconic or normal, and no icon
+  change(display, std::stoul(window), state, state, 32, 0, reinterpret_cast<const unsigned char*>(value), 2);
+  close(display);
 }
 
 }  // namespace coppice

@@ -51,6 +51,9 @@ class Desktop {
   // xdotool with these words; what it printed. Fails if it fails.
   std::string xdotool(const std::string& words) const;
 
+  // What a window manager writes to a window that it minimises, or shows again.
+  void set_minimised(const std::string& window, bool minimised) const;
+
   // The number of a window of that name that is to be seen; empty: there is none.
   std::string find(const std::string& name) const;
 

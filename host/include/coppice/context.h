@@ -32,6 +32,11 @@ struct COPPICE_API DeviceHung : DeviceError {
   using DeviceError::DeviceError;
 };
 
+// The device is gone, as after a reset of the driver: all that was made of it can only be freed.
+struct COPPICE_API DeviceLost : DeviceError {
+  using DeviceError::DeviceError;
+};
+
 // A call whose arguments cannot be: memory too small or misaligned, a count beyond its maximum, an option out
 // of its range. Nothing has been recorded.
 struct COPPICE_API ArgumentError : Error {
