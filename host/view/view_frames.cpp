@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "analysis/quality.h"
 #include "measure/show_frame.h"
@@ -117,6 +118,18 @@ ViewFrames::ViewFrames(CheckedDevice& device, const OpenedScene& opened, const V
   record();
 }
 
+// The device has to be done with what it was given.
+ViewFrames::~ViewFrames() {
+  if (!under_way_) return;
+  for (std::optional<Recorder>* const recorder : {&tree_recorder_, &refit_recorder_, &trace_recorder_}) {
+    try {
+      if (*recorder) (*recorder)->wait(piece_limit_seconds);
+    } catch (const DeviceError&) {
+      // Whoever asked for the frame has been told, or does not want to know.
+    }
+  }
+}
+
 // A tree of the host is there, and gets its wide nodes.
 void ViewFrames::record_tree(bool rebuilds, std::vector<std::string>& groups,
                              std::optional<Recorder>& recorder) {
@@ -137,10 +150,9 @@ void ViewFrames::record() {
   trace_recorder_.emplace(executor_.record(trace.steps()));
 }
 
-void ViewFrames::submit(Recorder& recorder, const std::vector<std::string>& names, ViewedFrame& frame) {
-  const Recorder::Times times = recorder.submit_and_wait(piece_limit_seconds);
+void ViewFrames::wait(Recorder& recorder, const std::vector<std::string>& names, ViewedFrame& frame) {
+  const Recorder::Times times = recorder.wait(piece_limit_seconds);
   frame.device_ms += times.total_ms;
-  frame.wall_ms += times.wall_ms;
   if (times.marks_ms.size() + 1 != names.size()) return;  // no timestamps
   double before = 0;
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -188,52 +200,79 @@ void ViewFrames::upload_values() {
   executor_.upload(slot, std::span<const uint>(values));
 }
 
+void ViewFrames::submit_tree(double seconds, bool rebuild) {
+  const bool moved = can_move() && seconds_ != seconds, asked = rebuild && plan_.build;
+  if (seconds_ && !moved && !asked) return;
+  tell(seconds);
+  if (asked) chooser_ = UpdateChooser(options_.update);  // which begins with a build
+  const bool refits = chooser_.next_refits() && refit_;
+  under_way_->frame.refitted = refits;
+  under_way_->frame.built = !refits;
+  under_way_->has_tree = refits || tree_recorder_;
+  if (under_way_->has_tree) (refits ? *refit_recorder_ : *tree_recorder_).submit();
+  seconds_ = seconds;
+  values_old_ = true;
+}
+
 // False where a refit was in vain: a triangle that has appeared needs a tree with a leaf for it.
-bool ViewFrames::make_tree(bool rebuilds, ViewedFrame& frame) {
-  frame.built = rebuilds;
-  if (rebuilds) {
-    if (tree_recorder_) submit(*tree_recorder_, tree_groups_, frame);
+bool ViewFrames::wait_for_tree() {
+  if (!std::exchange(under_way_->has_tree, false)) return true;
+  ViewedFrame& frame = under_way_->frame;
+  if (frame.built) {
+    wait(*tree_recorder_, tree_groups_, frame);
     return true;
   }
-  submit(*refit_recorder_, refit_groups_, frame);
+  wait(*refit_recorder_, refit_groups_, frame);
   frame.refitted = appeared() == 0;
   return frame.refitted;
 }
 
-bool ViewFrames::move_tree(double seconds, bool rebuild, ViewedFrame& frame) {
-  const bool moved = can_move() && seconds_ != seconds, asked = rebuild && plan_.build;
-  if (seconds_ && !moved && !asked) return true;
-  tell(seconds);
-  if (asked) chooser_ = UpdateChooser(options_.update);  // which begins with a build
-  const bool refits = chooser_.next_refits() && refit_;
-  const bool made = make_tree(!refits, frame);
-  if (!made) make_tree(true, frame);
-  seconds_ = seconds;
-  values_old_ = true;
-  return made;
+// In place of a refit that was in vain.
+void ViewFrames::build_after_all() {
+  ViewedFrame& frame = under_way_->frame;
+  under_way_->in_vain = frame.built = true;
+  tree_recorder_->submit();
+  wait(*tree_recorder_, tree_groups_, frame);
 }
 
-ViewedFrame ViewFrames::draw(const Film& film, double seconds, bool rebuild) {
-  ViewedFrame frame;
-  const bool in_vain = !move_tree(seconds, rebuild, frame);
-  const double update_ms = frame.device_ms;
-  if (values_old_) upload_values();
+void ViewFrames::submit(const Film& film, double seconds, bool rebuild) {
+  under_way_ = UnderWay{.seconds = seconds};
   executor_.upload(plan_.trace.film, std::span<const Film>(&film, 1));
   upload_show(executor_, plan_.trace.show, options_.show.show, span(film));
-  submit(*trace_recorder_, trace_groups_, frame);
+  submit_tree(seconds, rebuild);
+  if (values_old_ && plan_.trace.show.primitive_values.count > 0) {  // they are made of the tree
+    if (!wait_for_tree()) build_after_all();
+    upload_values();
+  }
+  values_old_ = false;
+  trace_recorder_->submit();
+}
+
+ViewedFrame ViewFrames::take() {
+  ViewedFrame& frame = under_way_->frame;
+  if (!wait_for_tree()) {
+    trace_recorder_->wait(piece_limit_seconds);  // of a tree that lacks a triangle
+    build_after_all();
+    trace_recorder_->submit();
+  }
+  const double update_ms = frame.device_ms;
+  wait(*trace_recorder_, trace_groups_, frame);
   std::uint32_t error_word = executor_.read(plan_.tree.state)[0].error_word;
   if (plan_.levels) {
     for (const BuildState& state : executor_.read(plan_.levels->plan.mesh_states))
       error_word |= state.error_word;
   }
   if (const std::string errors = describe_error_word(error_word); !errors.empty())
-    throw DeviceError("the frame at second " + std::to_string(seconds) + ": " + errors);
+    throw DeviceError("the frame at second " + std::to_string(under_way_->seconds) + ": " + errors);
   frame.counts = counts_of(executor_.read(plan_.trace.counters)[0]);
   if (frame.built || frame.refitted)
-    chooser_.note({frame.built, in_vain, update_ms, frame.device_ms - update_ms, frame.counts.steps});
+    chooser_.note(
+        {frame.built, under_way_->in_vain, update_ms, frame.device_ms - update_ms, frame.counts.steps});
   if (plan_.trace.show.range.count > 0)
     frame.seen = seen_in(executor_.read(plan_.trace.show.range)[0], options_.show.show);
-  return frame;
+  const ViewedFrame taken = std::move(frame);
+  under_way_.reset();
+  return taken;
 }
 
 std::vector<Node> ViewFrames::tree() const {

@@ -54,7 +54,7 @@ struct ViewedFrame {
   bool built = false;               // the tree was made anew
   bool refitted = false;            // or only its boxes
   std::vector<KernelGroup> groups;  // empty on a device without timestamps
-  double device_ms = 0, wall_ms = 0;
+  double device_ms = 0;
   TraceCounts counts;
   ShowSpan seen;  // of a view with a range
 };
@@ -66,16 +66,24 @@ struct ViewedTree {
   std::vector<std::uint32_t> clusters;  // at the beginning of each round of PLOC
 };
 
-// A scene as a window shows it, frame by frame: where its vertices are, its tree and its picture, in at most
-// two submits. Each frame is waited for. All that does not change between frames is recorded once.
+// A scene as a window shows it, frame by frame: where its vertices are, its tree and its picture, in two
+// submits, between which nothing is waited for unless the view shows values of the tree. So the host makes
+// its panes, and the device draws the frame before, while this one is under way. All that does not change
+// between frames is recorded once.
 class ViewFrames {
  public:
   // The opened scene must outlive it. Throws DeviceError or LayoutError where the device does not hold it.
   ViewFrames(CheckedDevice& device, const OpenedScene& opened, const ViewOptions& options);
+  ~ViewFrames();
+  ViewFrames(const ViewFrames&) = delete;
 
-  // The picture of that film at that time of the scene. The tree is made anew where the time is another one,
-  // or if asked for; one of the host is made once, and its scene stands still.
-  ViewedFrame draw(const Film& film, double seconds, bool rebuild);
+  // The picture of that film at that time of the scene, while no other is under way. The tree is made anew
+  // where the time is another one, or if asked for; one of the host is made once, and its scene stands still.
+  void submit(const Film& film, double seconds, bool rebuild);
+  bool is_under_way() const { return under_way_.has_value(); }
+
+  // Waits for the one under way. Throws DeviceError where it did not come out.
+  ViewedFrame take();
 
   // What is seen of PLOC's rounds from the next frame on, or of the tree's levels.
   void set_show(const ShowOptions& show);
@@ -102,14 +110,21 @@ class ViewFrames {
   void tell(double seconds);
   std::uint32_t appeared() const;
   void record_tree(bool rebuilds, std::vector<std::string>& groups, std::optional<Recorder>& recorder);
-  // False where it was refitted in vain, and then built.
-  bool move_tree(double seconds, bool rebuild, ViewedFrame& frame);
-  bool make_tree(bool rebuilds, ViewedFrame& frame);
+  void submit_tree(double seconds, bool rebuild);
+  bool wait_for_tree();
+  void build_after_all();
   static FramePlan plan_instances_of(ViewFrames& frames, FrameOptions options);
   static FramePlan plan_all(ViewFrames& frames, CheckedDevice& device);
   void record();
   void upload_values();
-  void submit(Recorder& recorder, const std::vector<std::string>& names, ViewedFrame& frame);
+  static void wait(Recorder& recorder, const std::vector<std::string>& names, ViewedFrame& frame);
+
+  struct UnderWay {
+    double seconds = 0;
+    bool has_tree = false;  // submitted, and not waited for
+    bool in_vain = false;   // it was refitted, and then had to be built
+    ViewedFrame frame{};    // as far as it is known
+  };
 
   const OpenedScene& opened_;
   ViewOptions options_;
@@ -128,7 +143,8 @@ class ViewFrames {
   // One a mark, and one for what is behind the last.
   std::vector<std::string> tree_groups_, refit_groups_, trace_groups_;
   std::optional<double> seconds_;  // of the tree
-  bool values_old_ = true;         // what is shown of primitives
+  std::optional<UnderWay> under_way_;
+  bool values_old_ = true;  // what is shown of primitives
 };
 
 }  // namespace coppice

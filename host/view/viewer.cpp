@@ -133,7 +133,8 @@ void Viewer::turn() {
   move_camera(std::min(passed, 0.1));
   move_time(std::min(passed, 0.5));
   if (is_hidden()) return;
-  draw_picture();
+  submit_picture();
+  if (asked_.show.show == Show::boxes) take_picture();  // the panes draw the lines of its tree
   if (!show_picture() || !frames_) return;
   device_is_new_ = false;
   ++presented_;
@@ -145,6 +146,7 @@ void Viewer::turn() {
 bool Viewer::show_picture() {
   screen_->begin();
   panes();
+  take_picture();
   PicturePlace picture;
   if (frames_) picture = {frames_->image_buffer(), frames_->image().place.offset, width_, height_};
   return screen_->show(picture);
@@ -190,18 +192,23 @@ void Viewer::take_scene() {
              opened_->arrays.triangle_count(), cycle_of(opened_->scene) ? ", moving" : ""));
 }
 
-void Viewer::draw_picture() {
+void Viewer::submit_picture() {
   if (!frames_) return;
   const bool moves = (plays_ && frames_->can_move()) || asked_.rebuild || asked_.draws_always;
   const Film film = film_at_time();
   if (!moves && !picture_old_ && !request_.rebuild && seconds_ == drawn_seconds_) return;
-  const auto start = ViewClock::now();
-  const ViewedFrame frame = frames_->draw(film, seconds_, asked_.rebuild || request_.rebuild);
+  submit_time_ = ViewClock::now();
+  frames_->submit(film, seconds_, asked_.rebuild || request_.rebuild);
   request_.rebuild = false;
   film_ = film;
   drawn_seconds_ = seconds_;
   picture_old_ = false;
-  note_frame(frame, seconds_between(start, ViewClock::now()) * 1000);
+}
+
+void Viewer::take_picture() {
+  if (!frames_ || !frames_->is_under_way()) return;
+  const ViewedFrame frame = frames_->take();
+  note_frame(frame, seconds_between(submit_time_, ViewClock::now()) * 1000);
 }
 
 void Viewer::note_frame(const ViewedFrame& frame, double ms) {

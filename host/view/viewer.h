@@ -88,7 +88,8 @@ class Viewer {
   bool wants_other_levels() const;
   void move_camera(double seconds);
   void move_time(double seconds);
-  void draw_picture();
+  void submit_picture();
+  void take_picture();
   Film film_at_time() const;
   bool camera_moves() const;
   std::vector<double> camera_now() const;
@@ -151,7 +152,7 @@ class Viewer {
   double cursor_x_ = 0, cursor_y_ = 0;
   bool flies_ = false, plays_ = true, panes_ = true, help_ = false;
   double seconds_ = 0, drawn_seconds_ = 0;  // of the scene
-  std::chrono::steady_clock::time_point last_turn_, last_description_;
+  std::chrono::steady_clock::time_point last_turn_, last_description_, submit_time_;
   std::string typed_scene_, complaint_;
   ViewStatistics statistics_;
   std::vector<double> frame_ms_, device_ms_;
