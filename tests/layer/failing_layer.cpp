@@ -63,6 +63,11 @@ VKAPI_ATTR VkResult VKAPI_CALL queue_submit2(VkQueue queue, std::uint32_t count,
       [&] { return below<PFN_vkQueueSubmit2>("vkQueueSubmit2")(queue, count, submits, fence); });
 }
 
+// It would wait for what was drawn.
+VKAPI_ATTR VkResult VKAPI_CALL queue_present(VkQueue queue, const VkPresentInfoKHR* info) {
+  return hangs ? VK_SUCCESS : below<PFN_vkQueuePresentKHR>("vkQueuePresentKHR")(queue, info);
+}
+
 // Whoever gives a limit is told at once that it is over.
 VKAPI_ATTR VkResult VKAPI_CALL wait_semaphores(VkDevice device, const VkSemaphoreWaitInfo* info,
                                                std::uint64_t limit) {
@@ -144,9 +149,10 @@ Named named(const char* name, Function function) {
 PFN_vkVoidFunction own_device_function(const char* name) {
   for (const Named& own :
        {named("vkGetDeviceProcAddr", device_function), named("vkQueueSubmit", queue_submit),
-        named("vkQueueSubmit2", queue_submit2), named("vkWaitSemaphores", wait_semaphores),
-        named("vkWaitForFences", wait_for_fences), named("vkDeviceWaitIdle", device_wait_idle),
-        named("vkQueueWaitIdle", queue_wait_idle), named("vkAllocateMemory", allocate_memory)}) {
+        named("vkQueueSubmit2", queue_submit2), named("vkQueuePresentKHR", queue_present),
+        named("vkWaitSemaphores", wait_semaphores), named("vkWaitForFences", wait_for_fences),
+        named("vkDeviceWaitIdle", device_wait_idle), named("vkQueueWaitIdle", queue_wait_idle),
+        named("vkAllocateMemory", allocate_memory)}) {
     if (!std::strcmp(own.name, name)) return own.function;
   }
   return nullptr;
