@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -11,6 +12,7 @@
 #include "scene/keyframes.h"
 #include "scene/motion.h"
 #include "scene/scene_source.h"
+#include "scene/view.h"
 #include "support/gltf_text.h"
 #include "support/obj_folder.h"
 #include "support/scene_file_text.h"
@@ -100,6 +102,22 @@ TEST(SceneFiles, RotationsNeedNotBeUnitQuaternions) {
     double turned[4];
     sample(keyframes, part, turned);
     EXPECT_NEAR(std::atan2(turned[2], turned[3]), part * std::numbers::pi / 6, 1e-12);
+  }
+}
+
+// For a sixteenth of a cycle something is where it is at no other time.
+TEST(SceneFiles, TheDefaultCameraSeesWhatMovesForAShortTime) {
+  const json track = {{"times", {0, 1, 2, 16}}, {"values", {{0, 0, 0}, {0, 50, 0}, {0, 0, 0}, {0, 0, 0}}}};
+  Scene scene = read_scene(with_object({{"keyframes", {{"translation", track}}}}));
+  ASSERT_FALSE(scene.camera);
+  const View view = view_of(frame_scene(scene, 1));
+  scene.positions = positions_at(*scene.motion, 1);
+  for (const glm::vec3 position : scene.positions) {
+    const glm::dvec3 to = glm::dvec3(position) - view.eye;
+    const double along = glm::dot(to, view.forward), reach = std::tan(std::numbers::pi / 9) * along;
+    EXPECT_GT(along, 0);
+    EXPECT_LT(std::abs(glm::dot(to, view.down)), reach) << position.y;
+    EXPECT_LT(std::abs(glm::dot(to, view.right)), reach) << position.y;
   }
 }
 

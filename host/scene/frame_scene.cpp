@@ -42,8 +42,11 @@ class Moments {
   explicit Moments(const Scene& scene) : scene_(scene) {
     if (!scene.motion) return;
     moment_ = scene;
-    for (int k = 1; k < count; ++k)
-      later_.push_back(positions_at(*scene.motion, scene.motion->duration_seconds * k / count));
+    const std::size_t count = count_for(scene.positions.size());
+    for (std::size_t k = 1; k < count; ++k) {
+      const double part = static_cast<double>(k) / static_cast<double>(count);
+      later_.push_back(positions_at(*scene.motion, scene.motion->duration_seconds * part));
+    }
   }
 
   template <class See>
@@ -57,7 +60,12 @@ class Moments {
   }
 
  private:
-  static constexpr int count = 8;
+  // What moves for a short time only is seen by many; of many vertices these would take long.
+  static std::size_t count_for(std::size_t vertices) {
+    constexpr std::size_t least = 8, most = 64, moved_vertices = 2'000'000;
+    return std::clamp(moved_vertices / std::max<std::size_t>(vertices, 1), least, most);
+  }
+
   const Scene& scene_;
   Scene moment_;
   std::vector<std::vector<glm::vec3>> later_;
