@@ -68,6 +68,7 @@ TEST(SharedLayout, ElementsOfEverySlot) {
   EXPECT_SAME_LAYOUT(Film);
   EXPECT_SAME_LAYOUT(SurfaceMaterial);
   EXPECT_SAME_LAYOUT(Lighting);
+  EXPECT_SAME_LAYOUT(LightSource);
   EXPECT_SAME_LAYOUT(TraceCounters);
   EXPECT_SAME_LAYOUT(ShowScale);
   EXPECT_SAME_LAYOUT(ShowRange);
@@ -84,7 +85,7 @@ TEST(SharedLayout, ElementsOfEverySlot) {
   EXPECT_SAME_LAYOUT(InstanceTransform);
   EXPECT_SAME_LAYOUT(MeshRange);
   EXPECT_SAME_LAYOUT(PlacedInstance);
-  EXPECT_EQ(seen.size(), 29u);
+  EXPECT_EQ(seen.size(), 30u);
 }
 
 }  // namespace

@@ -211,6 +211,28 @@ TEST(Traffic, OfAPictureOfOneSample) {
   EXPECT_FALSE(bytes.contains("shade") || bytes.contains("resolve"));
 }
 
+// 1,000 rays, of which 250 hit something; of the 200 shadow rays of two lights 40 are blocked.
+TEST(Traffic, OfLightsAndShadows) {
+  Layout layout;
+  const TreeSlots tree = plan_tree(layout, 100, 199);
+  const TracePlan plan =
+      plan_trace(layout, tree, 1, {.width = 40, .height = 25, .lights = {.lights = 3, .shadows = 2}});
+  Chain chain(no_addresses);
+  append_trace(chain, tree, plan);
+  RunCounts counts;
+  counts.rays = 1000, counts.hits = 250, counts.steps = 4000;
+  counts.shadow = {2000, 200, 40, 3000};
+  std::map<std::string, std::uint64_t> bytes;
+  for (const Step& step : chain.steps()) {
+    if (stage_of(step)) bytes[stage_of(step)->name] += modelled_bytes(step, counts);
+  }
+  EXPECT_EQ(bytes["shadow_marks"], 2u * (1000 * 20 + 250 * 76));
+  EXPECT_EQ(bytes["shadow_rays"], 2u * 1000 * 8 + 200 * 96);
+  EXPECT_EQ(bytes["trace_any"], 200u * 36 + 3000 * 64 + 40 * 36);
+  const std::uint64_t plain = 1000 * 4 + 250 * 112;
+  EXPECT_EQ(bytes["shade_lights"], plain + 2 * (1000 * 4 + 250 * 4) + 200 * 8 + 160 * 112);
+}
+
 TEST(Traffic, OfATraceOfTwoSamples) {
   Layout layout;
   const TreeSlots tree = plan_tree(layout, 100, 199);

@@ -170,7 +170,8 @@ TEST(Nearly, OnlyStagesThatDivideOrTakeRootsAreNearlyEqual) {
     const std::string_view name = stage->name;
     const bool traces = name.starts_with("trace_") && name != "trace_misses";  // which writes constants
     const bool may = traces || name == "camera_rays" || name == "bounce_rays" || name == "shade" ||
-                     name == "resolve" || name == "shade_pixels" || name == "show";
+                     name == "resolve" || name == "shade_pixels" || name == "show" || name == "shadow_rays" ||
+                     name == "shade_lights";
     EXPECT_EQ(!stage->nearly.empty(), may) << name;
   }
 }

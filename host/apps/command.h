@@ -53,6 +53,7 @@ std::unique_ptr<Command> make_stability();
 std::unique_ptr<Command> make_bench();
 std::unique_ptr<Command> make_tune();
 std::unique_ptr<Command> make_animate();
+std::unique_ptr<Command> make_effects();
 std::unique_ptr<Command> make_scenes();
 std::unique_ptr<Command> make_devices();
 

@@ -85,6 +85,7 @@ class AnimateCommand : public Command {
     app.add_option("--csv", files.csv, "every frame, comma-separated")->type_name("FILE");
     app.add_flag("--kernels", kernels_, "print the time of every kernel of one frame");
     add_picture(app, picture_, scene_.up);
+    add_effects(app, scene_.effects);
     add_tree(app, device_.choices.walk);
     add_trace_events(app, files.trace_events);
     std::vector<std::string> builders = device_builder_names();
@@ -119,11 +120,12 @@ class AnimateCommand : public Command {
     if (!video_.empty()) check_writable(video_);
     const Pictures pictures = folder_.empty() ? Pictures() : Pictures(folder_);
     scene_.keep_instances = traces_instances();
-    const Scene scene = open_scene_of(scene_, builder_, device_, true);
+    const Scene scene = open_for_effects(scene_, builder_, device_, true, false);
     const std::optional<SceneCycle> cycle = cycle_of(scene);
     if (!cycle) print_note(why_still(scene));
     AnimateRuns runs{.builder = builder_, .trace = picture_.trace, .camera = picture_.camera};
     runs.update = update_;
+    runs.effects = scene_.effects;
     runs.tree_cost = tree_cost_ || !files.plot.empty() || !files.csv.empty();
     runs.first = first_;
     runs.last = last_;

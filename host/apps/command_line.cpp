@@ -22,6 +22,7 @@ constexpr NamedCommand commands[] = {
     {"bench", "times of sort, scan, PLOC, build or trace, results checked first", make_bench},
     {"tune", "measure the variants of stages on this device, and keep the fastest", make_tune},
     {"animate", "rebuild every frame; frame times, pictures, a video", make_animate},
+    {"effects", "what the scene calls for, and what each effect costs", make_effects},
     {"scenes", "the built-in scenes", make_scenes},
     {"devices", "the Vulkan devices", make_devices},
 };

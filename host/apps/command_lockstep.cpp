@@ -16,6 +16,7 @@ class LockstepCommand : public Command {
  public:
   void add_options(CLI::App& app) override {
     add_picture(app, picture_, scene_.up);
+    add_effects(app, scene_.effects);
     add_intersection(app, picture_.trace);
     add_tree(app, device_.choices.walk);
     add_scene_and_build(app, scene_, builder_, device_, device_builder_names());
@@ -27,7 +28,7 @@ class LockstepCommand : public Command {
 
   int run() override {
     const Scene scene = open_scene_of(scene_, builder_, device_, true);
-    const SceneArrays arrays = scene_arrays(scene);
+    const SceneArrays arrays = scene_arrays(scene, effects_of(scene, scene_.effects));
     const TraceOptions& trace = picture_.trace;
     const BuildOptions least = builder_.least_build_options();
     CheckedDevice device = open_device(device_, {true, least, {trace}, arrays.triangle_count()});

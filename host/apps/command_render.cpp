@@ -5,6 +5,7 @@
 #include "apps/command.h"
 #include "apps/open_device.h"
 #include "apps/option_rules.h"
+#include "measure/effects_report.h"
 #include "measure/frame_report.h"
 #include "measure/table.h"
 #include "pipeline/interruption.h"
@@ -31,6 +32,8 @@ class RenderCommand : public Command {
     app.add_option("--tracer", tracer_)->check(CLI::IsMember({"gpu", "cpu"}))->capture_default_str();
     app.add_flag("--kernels", kernels_, "print the time of every kernel; takes the frame once more");
     add_picture(app, picture_, scene_.up);
+    add_effects(app, scene_.effects);
+    app.add_flag("--explain", explain_, "say of each effect whether it is on, and what called for it");
     add_show(app, show_);
     add_intersection(app, picture_.trace);
     add_tree(app, device_.choices.walk);
@@ -80,13 +83,18 @@ class RenderCommand : public Command {
     const auto load_start = Clock::now();
     const bool on_device = traces_on_device() || builder_.on_device();
     scene_.keep_instances = traces_instances();
-    const Scene scene = open_scene_of(scene_, builder_, device_, on_device);
+    const Scene scene = open_for_effects(scene_, builder_, device_, on_device, true);
+    const EffectSet effects = effects_of(scene, scene_.effects);
+    if (explain_ && files.talks()) print(explain(effects));
+    check_shadows(effects);
     around.load_ms = ms_since(load_start);
     if (show_.show == Show::instances && scene.instances.empty())
       throw InputError("--show instances: scene '" + scene.name + "' has no instances");
 
     if (builder_.name == "none") picture_.trace.walk = Walk::brute_force;
     FrameRuns frame{builder_, picture_.trace, picture_.camera, runs_, false, files.trace_events, show_};
+    frame.effects = scene_.effects;
+    frame.explains = explain_;
     frame.split = kernels_ || !files.json.empty() || !files.trace_events.empty();
     std::optional<CheckedDevice> device;
     const auto device_start = Clock::now();
@@ -106,6 +114,15 @@ class RenderCommand : public Command {
 
  private:
   bool traces_on_device() const { return tracer_ == "gpu"; }
+
+  // There is none to trace them through.
+  void check_shadows(const EffectSet& effects) const {
+    if (effects.has(Effect::shadows) && show_.show == Show::color && traces_on_device() &&
+        builder_.name == "none")
+      throw InputError(
+          "--builder none: shadows are traced through a tree, which takes another builder "
+          "(--effects=-shadows goes without)");
+  }
 
   // Otherwise instances are flattened: only the binary walk of trees of the device knows two levels.
   bool traces_instances() const {
@@ -132,7 +149,7 @@ class RenderCommand : public Command {
   }
 
   std::string tracer_ = "gpu";
-  bool kernels_ = false;
+  bool kernels_ = false, explain_ = false;
   std::uint32_t runs_ = 1;
   SceneOptions scene_;
   PictureOptions picture_;

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "render/scene_room.h"
+#include "scene/input_error.h"
 
 namespace coppice {
 
@@ -24,6 +25,10 @@ std::string remedy_of_slow_driver() {
          " LD_LIBRARY_PATH=" + (newer / "lib").string();
 }
 
+std::optional<BuildOptions> build_of(const BuilderChoice& builder) {
+  return builder.on_device() ? std::optional(builder.least_build_options()) : std::nullopt;
+}
+
 }  // namespace
 
 void print_note(const std::string& line) { std::fprintf(stderr, "note: %s\n", line.c_str()); }
@@ -34,9 +39,28 @@ void print_warnings(const Scene& scene) {
 
 Scene open_scene_of(const SceneOptions& options, const BuilderChoice& builder, const DeviceSetup& device,
                     bool on_device) {
-  std::optional<BuildOptions> build;
-  if (builder.on_device()) build = builder.least_build_options();
-  Scene scene = open_scene_with_room(options, on_device ? &device.options : nullptr, build, print_note);
+  Scene scene =
+      open_scene_with_room(options, on_device ? &device.options : nullptr, build_of(builder), print_note);
+  print_warnings(scene);
+  return scene;
+}
+
+Scene open_for_effects(const SceneOptions& options, const BuilderChoice& builder, const DeviceSetup& device,
+                       bool on_device, bool may_stand_still) {
+  const auto open = [&](const SceneOptions& scene) {
+    return open_scene_with_room(scene, on_device ? &device.options : nullptr, build_of(builder), print_note);
+  };
+  Scene scene = open(options);
+  if (!scene.instances.empty() && effects_of(scene, options.effects).has(Effect::shadows)) {
+    const bool moves = scene.swarm || scene.motion;
+    SceneOptions one_level = options;
+    one_level.keep_instances = false;
+    scene = open(one_level);
+    if (moves && !scene.motion && !may_stand_still)
+      throw InputError("scene '" + scene.name +
+                       "' has instances that move, through which no shadow rays are traced "
+                       "(--effects=-shadows goes without)");
+  }
   print_warnings(scene);
   return scene;
 }

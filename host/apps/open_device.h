@@ -18,6 +18,11 @@ void print_warnings(const Scene& scene);
 Scene open_scene_of(const SceneOptions& scene, const BuilderChoice& builder, const DeviceSetup& device,
                     bool on_device);
 
+// The same for a picture with the scene's effects. Shadow rays are traced through trees of one level: with
+// shadows instances are not kept. Throws InputError where they would then stand still and should not.
+Scene open_for_effects(const SceneOptions& scene, const BuilderChoice& builder, const DeviceSetup& device,
+                       bool on_device, bool may_stand_still);
+
 // The device that was asked for, checked; notes go to stderr. Throws DeviceError if there is no such device
 // or it fails.
 CheckedDevice open_device(const DeviceSetup& device, const DeviceUse& use);

@@ -7,6 +7,7 @@
 #include "builders/registry.h"
 #include "interface/ploc.h"
 #include "pipeline/build_plan.h"
+#include "scene/input_error.h"
 #include "scene/printable.h"
 #include "scene/view.h"
 
@@ -218,6 +219,19 @@ void add_picture(CLI::App& app, PictureOptions& picture, std::string& up) {
   app.add_option("--spp", picture.trace.samples, "samples per pixel")
       ->check(CLI::Range(1u, 65536u))
       ->capture_default_str();
+}
+
+void add_effects(CLI::App& app, EffectChanges& effects) {
+  const auto set = [&effects](const std::string& given) {
+    try {
+      effects = EffectChanges(given);
+    } catch (const InputError& error) {
+      throw CLI::ValidationError("--effects: " + std::string(error.what()));
+    }
+  };
+  app.add_option_function<std::string>(
+         "--effects", set, "effects that the picture has or has not, whatever the scene calls for")
+      ->type_name("+E,-E,...");
 }
 
 void add_show(CLI::App& app, ShowOptions& show) {

@@ -52,8 +52,8 @@ class FrameLoop {
     report_.frames.push_back({number, std::chrono::duration<double, std::milli>(now - last_done_).count(),
                               frame.vertices_ms, frame.update_ms, frame.wide_ms, frame.trace_ms,
                               frame.total_ms, frame.rebuilt, frame.sah, frame.state.active_count,
-                              frame.counts.rays, frame.counts.hits, frame.counts.steps,
-                              image_hash(frame.image)});
+                              frame.counts.rays, frame.counts.hits, frame.counts.steps, frame.shadow.rays,
+                              frame.shadow.hits, image_hash(frame.image)});
     last_done_ = now;
     if (runs_.picture) runs_.picture(number, frame.image);
   }
@@ -79,10 +79,11 @@ void split_kernels(CheckedDevice& device, MovingFrames& frames, const AnimateRun
     frames.executor().record(part.steps).submit_and_wait(piece_limit_seconds);
     const KernelSplit split = split_time(frames.executor(), part.steps, piece_limit_seconds);
     RunCounts counts = counts_of_build(frames.executor(), part.build, plan.wide ? &*plan.wide : nullptr);
-    const RunCounts trace = counts_of_trace(frames.executor().read(plan.trace.counters)[0]);
+    const RunCounts trace = counts_of_picture(frames.executor(), plan.trace);
     counts.rays = trace.rays;
     counts.hits = trace.hits;
     counts.steps = trace.steps;
+    counts.shadow = trace.shadow;
     sums.add(split.steps, split.times, counts);
     events.add(split);
     total_ms += split.times.total_ms;
@@ -97,6 +98,7 @@ MovingOptions moving_options(const CheckedDevice& device, const Scene& scene, co
   const std::uint32_t bits = runs.builder.bits_for(scene_arrays(scene).triangles);
   return {.build = device.build_options(runs.builder.build_options(bits)),
           .trace = runs.trace,
+          .effects = runs.effects,
           .update = runs.update,
           .tree_cost = runs.tree_cost};
 }

@@ -25,6 +25,7 @@ struct AnimateRuns {
   TraceOptions trace{};
   Update update = Update::rebuild;
   bool tree_cost = false;        // the SAH cost of every frame's tree
+  EffectChanges effects{};       // beside what the scene calls for
   std::vector<double> camera{};  // see given_view; empty: the scene's, as it moves
   std::uint32_t first = 0, last = 0;
   double frames_per_second = 30;
@@ -45,7 +46,8 @@ struct AnimatedFrame {
   bool rebuilt;
   double sah;  // 0 unless asked for
   std::uint32_t active_count;
-  std::uint64_t rays, hits, steps;
+  std::uint64_t rays, hits, steps;  // of the camera's rays
+  std::uint64_t shadow_rays, shadow_hits;
   std::uint64_t hash;  // of the picture
 };
 

@@ -68,7 +68,10 @@ const char* word_of_update(Update update) {
 
 Json to_json(const AnimateReport& report) {
   Json hashes = Json::array(), numbers = Json::array();
+  std::uint64_t rays = 0, shadow_rays = 0;
   for (const AnimatedFrame& frame : report.frames) {
+    rays += frame.rays;
+    shadow_rays += frame.shadow_rays;
     hashes.push_back(hex16(frame.hash));
     numbers.push_back(frame.number);
   }
@@ -97,6 +100,7 @@ Json to_json(const AnimateReport& report) {
     json["sah"] = Json::array();
     for (const AnimatedFrame& frame : report.frames) json["sah"].push_back(frame.sah);
   }
+  json["rays"] = {{"primary", rays}, {"shadow", shadow_rays}};
   json["rebuilds"] = report.rebuilds;
   json["refits"] = report.refits;
   json["frame_numbers"] = numbers;
@@ -119,8 +123,8 @@ std::string text_of(const AnimateReport& report) {
                  static_cast<unsigned long long>(report.rebuilds),
                  static_cast<unsigned long long>(report.refits));
   for (const TriedTree& tree : report.tried)
-    text += format("  tried: %s, %s: %.2f ms\n", tree.builder.c_str(), std::string(name_of(tree.walk)).c_str(),
-                   tree.ms);
+    text += format("  tried: %s, %s: %.2f ms\n", tree.builder.c_str(),
+                   std::string(name_of(tree.walk)).c_str(), tree.ms);
   if (report.skipped) text += format("  %u frames are there already\n", report.skipped);
   if (report.frames.empty()) return text;
   Table table({{.heading = "ms", .width = -10, .gap = 2},

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/tree_hash.h"
+#include "measure/effects_report.h"
 #include "measure/show_frame.h"
 #include "measure/table.h"
 #include "render/film.h"
@@ -11,9 +12,13 @@ namespace coppice {
 
 namespace {
 
-Json effects_of(const Scene& scene) {
+// What every picture has, and the effects that are on.
+Json names_of_effects(const Scene& scene, const EffectSet& set) {
   Json effects = Json::array({"ambient"});
   if (scene.light.radiance != vec3(0)) effects.push_back("directional_light");
+  for (std::size_t i = 0; i < effect_count; ++i) {
+    if (set.has(static_cast<Effect>(i))) effects.push_back(EFFECT_NAMES[i]);
+  }
   return effects;
 }
 
@@ -27,7 +32,7 @@ Json camera_of(const Scene& scene, const FrameRuns& frame) {
 }
 
 double mrays_per_s(const FrameReport& report) {
-  return static_cast<double>(report.rays) / report.trace_ms / 1000;
+  return static_cast<double>(report.rays + report.shadow.rays) / report.trace_ms / 1000;
 }
 
 }  // namespace
@@ -47,15 +52,16 @@ Json to_json(const FrameReport& report, const Scene& scene, const FrameRuns& fra
                {"trace_ms", report.trace_ms},
                {"rays",
                 {{"primary", report.rays},
-                 {"shadow", 0},
+                 {"shadow", report.shadow.rays},
                  {"reflection", 0},
                  {"refraction", 0},
                  {"occlusion", 0},
                  {"diffuse", 0}}},
                {"mrays_per_s", mrays_per_s(report)},
-               {"effects", effects_of(scene)},
+               {"effects", names_of_effects(scene, effects_of(scene, frame.effects))},
                {"kernels", to_json(report.kernels)}};
   sums_to_json(report.kernels, json);
+  if (frame.explains) json["explained"] = to_json(effects_of(scene, frame.effects));
   json["show"] = name_of(report.shown.options.show);
   json["shown"] = to_json(report.shown, scene);
   if (report.build.instances) json["instances"] = report.build.instances;
@@ -84,6 +90,10 @@ std::string text_of(const FrameReport& report, const Scene& scene, const FrameRu
   text += format("  trace    %9.1f ms  %ux%u, %u spp, %.2f Mrays/s on the %s\n", report.trace_ms,
                  frame.trace.width, frame.trace.height, frame.trace.samples, mrays_per_s(report),
                  around.tracer.c_str());
+  if (report.shadow.rays > 0)
+    text += format("  shadows  %9llu rays, %llu of them blocked\n",
+                   static_cast<unsigned long long>(report.shadow.rays),
+                   static_cast<unsigned long long>(report.shadow.hits));
   text += text_of(report.shown, scene);
   text += format("  write    %9.1f ms\n", around.write_ms);
   if (!report.kernels.rows.empty() && !build.kernels.rows.empty()) text += text_of(build.kernels);

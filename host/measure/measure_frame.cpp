@@ -114,7 +114,7 @@ void split_kernels(CheckedDevice& device, GpuExecutor& executor, const TreeSteps
     tree_steps = top.steps();
   }
   tree_steps.insert(tree_steps.end(), steps.wide.begin(), steps.wide.end());
-  const RunCounts counts = counts_of_trace(executor.read(plan.trace.counters)[0]);
+  const RunCounts counts = counts_of_picture(executor, plan.trace);
   TraceEvents events;
   KernelSums tree_sums, sums;
   if (!tree_steps.empty()) {
@@ -169,7 +169,7 @@ void read_picture(const GpuExecutor& executor, const FramePlan& plan, const Film
 }  // namespace
 
 FrameReport measure_frame(CheckedDevice& device, const Scene& scene, const FrameRuns& frame) {
-  const SceneArrays arrays = scene_arrays(scene);
+  const SceneArrays arrays = scene_arrays(scene, effects_of(scene, frame.effects));
   FrameReport report;
   report.trace_device = device.properties().name + ", " + device.properties().driver;
   report.build = report_for(frame.builder, scene, arrays.triangles, device.notes());
@@ -202,10 +202,11 @@ FrameReport measure_frame(CheckedDevice& device, const Scene& scene, const Frame
   upload_shown(executor, plan, arrays, report);
   TraceProgress progress(plan.pieces(plan.trace).work(), frame.runs + frame.split);
   measure_frames(executor, steps, plan, pace, frame.runs, progress, report);
-  const RunCounts counts = counts_of_trace(executor.read(plan.trace.counters)[0]);
+  const RunCounts counts = counts_of_picture(executor, plan.trace);
   report.rays = counts.rays;
   report.hits = counts.hits;
   report.steps = counts.steps;
+  report.shadow = {counts.shadow.rays, counts.shadow.hits, counts.shadow.steps};
   read_picture(executor, plan, film, report);
   report.build.device_bytes = device_bytes(layout);
   if (plan.build) describe_device_build(device, executor, *plan.build, report.build);

@@ -8,7 +8,7 @@
 #include "pipeline/checked_device.h"
 #include "pipeline/trace_plan.h"
 #include "render/show.h"
-#include "scene/scene.h"
+#include "scene/effect_set.h"
 
 namespace coppice {
 
@@ -21,6 +21,8 @@ struct FrameRuns {
   bool split = false;            // once more, for the times of kernels and the file of trace events
   std::string trace_events{};    // a file; empty: none
   ShowOptions show{};            // clusters only of gpu-ploc
+  EffectChanges effects{};       // beside what the scene calls for
+  bool explains = false;         // the report says why each effect is on or off
 };
 
 // What a picture shows in place of colours, and between which values.
@@ -34,8 +36,9 @@ struct FrameReport {
   BuildReport build;
   double wide_ms = 0;  // of the conversion to wide nodes; 0 where the binary tree is walked
   double trace_ms = 0;
-  std::uint64_t rays = 0, hits = 0, steps = 0;
-  std::string trace_device;  // name and driver
+  std::uint64_t rays = 0, hits = 0, steps = 0;  // of the camera's rays
+  TraceCounts shadow;                           // of shadow rays
+  std::string trace_device;                     // name and driver
   bool walks_wide = false;
   KernelTable kernels;      // of the trace, on a device
   std::vector<uint> image;  // RGBA8

@@ -19,6 +19,31 @@ namespace coppice {
 
 namespace {
 
+std::uint64_t count_hits(std::span<const Hit> hits) {
+  return static_cast<std::uint64_t>(
+      std::ranges::count_if(hits, [](const Hit& hit) { return hit.triangle != NO_TRIANGLE; }));
+}
+
+void trace_closest_on_host(const TraceClosestArgs& args, const Bvh& bvh, std::span<const Triangle> triangles,
+                           FrameReport& report) {
+  const std::span<const Ray> rays(&args.rays[0], args.ray_count);
+  const std::span<Hit> hits(&args.hits[0], args.ray_count);
+  trace_all(bvh.nodes, triangles, rays, hits);
+  report.rays += rays.size();
+  report.hits += count_hits(hits);
+}
+
+// Of shadow rays: whether there is a closest hit.
+void trace_any_on_host(const TraceAnyArgs& args, const Bvh& bvh, std::span<const Triangle> triangles,
+                       FrameReport& report) {
+  const std::span<const Ray> rays(&args.rays[0], args.count_at[0]);
+  std::vector<Hit> hits(rays.size());
+  trace_all(bvh.nodes, triangles, rays, hits);
+  for (std::size_t i = 0; i < hits.size(); ++i) args.any_hits[i] = hits[i].triangle != NO_TRIANGLE;
+  report.shadow.rays += rays.size();
+  report.shadow.hits += count_hits(hits);
+}
+
 // The device's chain, in pieces, with the independent tracer in the place of its tracer.
 void trace_on_host(CpuExecutor& executor, const TreeSlots& tree, const TracePlan& trace, const Bvh& bvh,
                    std::span<const Triangle> triangles, FrameReport& report) {
@@ -35,17 +60,12 @@ void trace_on_host(CpuExecutor& executor, const TreeSlots& tree, const TracePlan
     const auto piece_start = std::chrono::steady_clock::now();
     const std::uint64_t work = pieces.append(chain, pace.work());
     for (const Step& step : chain.steps()) {
-      const TraceClosestArgs* const closest = args_of(step, stages::trace_closest);
-      if (!closest) {
+      if (const TraceClosestArgs* const closest = args_of(step, stages::trace_closest))
+        trace_closest_on_host(*closest, bvh, triangles, report);
+      else if (const TraceAnyArgs* const any = args_of(step, stages::trace_any))
+        trace_any_on_host(*any, bvh, triangles, report);
+      else
         executor.run(step);
-        continue;
-      }
-      const TraceClosestArgs& args = *closest;
-      const std::span<const Ray> rays(&args.rays[0], args.ray_count);
-      const std::span<Hit> hits(&args.hits[0], args.ray_count);
-      trace_all(bvh.nodes, triangles, rays, hits);
-      report.rays += args.ray_count;
-      report.hits += std::ranges::count_if(hits, [](const Hit& hit) { return hit.triangle != NO_TRIANGLE; });
     }
     pace.note(
         work,
@@ -61,7 +81,7 @@ void trace_on_host(CpuExecutor& executor, const TreeSlots& tree, const TracePlan
 
 FrameReport measure_host_frame(CheckedDevice* device, const Scene& scene, const FrameRuns& frame,
                                const Note& note) {
-  const SceneArrays arrays = scene_arrays(scene);
+  const SceneArrays arrays = scene_arrays(scene, effects_of(scene, frame.effects));
   FrameReport report;
   report.trace_device = "host CPU";
   report.build = report_for(frame.builder, scene, arrays.triangles, note);

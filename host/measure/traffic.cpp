@@ -1,7 +1,5 @@
 #include "measure/traffic.h"
 
-#include "pipeline/trace_plan.h"
-
 namespace coppice {
 
 RunCounts counts_of_trace(const TraceCounters& counters) {
@@ -10,6 +8,14 @@ RunCounts counts_of_trace(const TraceCounters& counters) {
   counts.rays = traced.rays;
   counts.hits = traced.hits;
   counts.steps = traced.steps;
+  return counts;
+}
+
+RunCounts counts_of_picture(const GpuExecutor& executor, const TracePlan& plan) {
+  RunCounts counts = counts_of_trace(executor.read(plan.counters)[0]);
+  if (plan.lights.counters.count == 0) return counts;
+  const TraceCounts shadow = counts_of(executor.read(plan.lights.counters)[0]);
+  counts.shadow = {counts.rays * plan.options.lights.shadows, shadow.rays, shadow.hits, shadow.steps};
   return counts;
 }
 

@@ -17,19 +17,24 @@ static_assert(SCAN_MAX_TILES <= SCAN_TILE * 4 && SCAN_MAX_TILES <= 65535);
 
 }  // namespace
 
+std::uint64_t scan_quads(std::uint64_t word_count) { return divide_up(word_count, 4); }
+
+std::uint64_t scan_status_words(std::uint64_t word_count) {
+  return first_tile_word + divide_up(divide_up(scan_quads(word_count), SCAN_TILE) * SCAN_SUMS, 4) * 4;
+}
+
 ScanPlan plan_scan(Layout& layout, std::uint64_t word_count, const BuildOptions& options) {
   if (word_count > max_scan_words) {
     throw std::invalid_argument(std::to_string(word_count) + " words are more than a scan takes, " +
                                 std::to_string(max_scan_words));
   }
-  const std::uint64_t quads = divide_up(word_count, 4);
+  const std::uint64_t quads = scan_quads(word_count);
   ScanPlan plan;
   plan.options = options;
   plan.word_count = static_cast<std::uint32_t>(word_count);
   plan.source = layout.add<uvec4>("scan_source", quads, Memory::source);
   plan.target = layout.add<uvec4>("scan_target", quads, Memory::target);
-  plan.status = layout.add<uint>("scan_status",
-                                 first_tile_word + divide_up(divide_up(quads, SCAN_TILE) * SCAN_SUMS, 4) * 4);
+  plan.status = layout.add<uint>("scan_status", scan_status_words(word_count));
   plan.state = layout.add<BuildState>("state", 1);
   return plan;
 }

@@ -18,6 +18,10 @@ struct ScanPlan {
   static Slot<uint> words_of(const Slot<uvec4>& quads) { return {quads.place, quads.count * 4}; }
 };
 
+// What a scan of so many words takes: quads of them, and words of status.
+std::uint64_t scan_quads(std::uint64_t word_count);
+std::uint64_t scan_status_words(std::uint64_t word_count);
+
 // The most words of a scan.
 inline constexpr std::uint64_t max_scan_words = std::uint64_t{SCAN_MAX_TILES} * SCAN_TILE * 4;
 

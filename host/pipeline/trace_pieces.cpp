@@ -115,7 +115,17 @@ void TracePieces::append_shade(Chain& chain, Vec3Buffer radiance) const {
             {triangles, material_index, chain.at(plan_.materials), chain.at(plan_.lighting),
              chain.at(plan_.rays, range_.first), chain.at(plan_.hits, range_.first), radiance, range_.count,
              sample_},
-            groups_of(range_.count, SHADE_GROUP), {plan_.options.directional_light});
+            groups_of(range_.count, SHADE_GROUP),
+            {plan_.options.directional_light && plan_.options.lights.lights == 0});
+}
+
+void TracePieces::append_all_lights(Chain& chain, Vec3Buffer radiance) const {
+  if (plan_.options.lights.lights == 0) return;
+  const auto [triangles, material_index] = surfaces(chain);
+  append_lights(chain, tree_, plan_.lights,
+                {triangles, material_index, chain.at(plan_.materials), chain.at(plan_.rays, range_.first),
+                 chain.at(plan_.hits, range_.first), radiance, range_.count},
+                plan_.options);
 }
 
 void TracePieces::append_show(Chain& chain, Vec3Buffer radiance) const {
@@ -142,10 +152,12 @@ void TracePieces::append_pixels(Chain& chain) const {
 
 void TracePieces::append_radiance(Chain& chain) const {
   const auto radiance = chain.at(plan_.radiance, range_.first);
-  if (plan_.options.show != SHOW_COLOR)
+  if (plan_.options.show != SHOW_COLOR) {
     append_show(chain, radiance);
-  else
+  } else {
     append_shade(chain, radiance);
+    append_all_lights(chain, radiance);
+  }
   if (sample_ + 1 == plan_.options.samples) {
     chain.run(stages::resolve,
               {chain.at(plan_.film), radiance, chain.at(plan_.srgb_thresholds), chain.at(plan_.image),
@@ -171,6 +183,7 @@ void TracePieces::close_range(Chain& chain) {
 std::uint64_t TracePieces::append(Chain& chain, std::uint64_t work) {
   if (!cleared_) chain.clear(plan_.counters);
   if (!cleared_) chain.clear(plan_.show.range);
+  if (!cleared_) chain.clear(plan_.lights.counters);
   cleared_ = true;
   std::uint64_t appended = 0;
   while (!done() && has_room(tree_, plan_.options, appended, work)) {

@@ -100,6 +100,7 @@ class TracePieces {
   void append_traced_pixels(Chain& chain) const;
   void append_radiance(Chain& chain) const;
   void append_shade(Chain& chain, Vec3Buffer radiance) const;
+  void append_all_lights(Chain& chain, Vec3Buffer radiance) const;
   void append_show(Chain& chain, Vec3Buffer radiance) const;
 
   TreeSlots tree_;

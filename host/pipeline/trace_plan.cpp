@@ -89,7 +89,9 @@ ShowSlots plan_show(Layout& layout, const TreeSlots& tree, uint view) {
 
 }  // namespace
 
-bool keeps_radiance(const TraceOptions& options) { return options.samples > 1 || options.show != SHOW_COLOR; }
+bool keeps_radiance(const TraceOptions& options) {
+  return options.samples > 1 || options.show != SHOW_COLOR || options.lights.lights > 0;
+}
 
 bool can_trace_wide(const TraceOptions& options) {
   return options.walk != Walk::brute_force && options.triangle_test == TRIANGLE_WATERTIGHT &&
@@ -180,6 +182,7 @@ TracePlan plan_trace(Layout& layout, const TreeSlots& tree, std::uint32_t materi
   plan.rays = layout.add<Ray>("rays", kept_rays);
   plan.hits = layout.add<Hit>("hits", kept_rays);
   plan.radiance = layout.add<vec3>("radiance", keeps_radiance(options) ? plan.band_rays : 0);
+  if (options.show == SHOW_COLOR) plan.lights = plan_lights(layout, options.lights, plan.band_rays);
   if (options.show != SHOW_COLOR) plan.show = plan_show(layout, tree, options.show);
   if (options.show == SHOW_STEPS) plan.ray_steps = layout.add<uint>("ray_steps", plan.band_rays);
   return plan;

@@ -5,6 +5,7 @@
 
 #include "interface/show.h"
 #include "pipeline/build_plan.h"
+#include "pipeline/lights.h"
 #include "pipeline/ray_filter.h"
 #include "pipeline/walk.h"
 
@@ -23,6 +24,7 @@ struct TraceOptions {
   std::uint32_t triangle_test = TRIANGLE_WATERTIGHT;
   std::uint32_t box_test = BOX_ROBUST;
   bool directional_light = true;    // what the scene calls for
+  LightCounts lights{};             // of colours
   std::uint32_t show = SHOW_COLOR;  // SHOW_; brute force has no steps
   bool keep_hits = false;           // the rays of the last sample and their hits are asked for
 };
@@ -31,7 +33,7 @@ struct TraceOptions {
 // order of visits does not show.
 bool can_trace_wide(const TraceOptions& options);
 
-// Whether samples are added up before they are pixels, or what they see is not colour.
+// Whether samples or lights are added up before they are pixels, or what they see is not colour.
 bool keeps_radiance(const TraceOptions& options);
 
 // Whether each ray becomes a pixel at once (trace_pixels): of packets through the wide tree, where neither
@@ -75,6 +77,7 @@ struct TracePlan : RaySlots {
   Slot<uint> image;                 // out: RGBA8, red in the low byte, rows top to bottom
 
   Slot<vec3> radiance;  // one a ray, in the order of FILM_STRIP; none where none is kept
+  LightSlots lights;
   ShowSlots show;
 };
 

@@ -11,6 +11,8 @@ namespace coppice {
 namespace {
 
 FramePlan plan_instanced_frame(Layout& layout, const SceneArrays& scene, const FrameOptions& options) {
+  if (options.trace.lights.shadows > 0)
+    throw std::invalid_argument("shadows are traced through trees of one level");
   if (!options.build || options.trace.walk != Walk::binary)
     throw std::invalid_argument("instances are built on the device and walked through binary trees");
   std::vector<std::uint32_t> counts;
@@ -35,7 +37,11 @@ FramePlan plan_instanced_frame(Layout& layout, const SceneArrays& scene, const F
 
 }  // namespace
 
-FramePlan plan_frame(Layout& layout, const SceneArrays& scene, const FrameOptions& options) {
+FramePlan plan_frame(Layout& layout, const SceneArrays& scene, const FrameOptions& given) {
+  FrameOptions options = given;
+  options.trace.lights = options.trace.show == SHOW_COLOR ? scene.light_counts : LightCounts{};
+  if (options.trace.lights.shadows > 0 && options.trace.walk == Walk::brute_force)
+    throw std::invalid_argument("shadows are traced through a tree");
   if (!scene.mesh_index.empty()) return plan_instanced_frame(layout, scene, options);
   FramePlan plan;
   if (options.build) plan.build = plan_build(layout, scene.triangle_count(), *options.build);

@@ -31,8 +31,9 @@ struct FramePlan {
   }
 };
 
-// Throws LayoutError if a slot does not fit a block, and std::invalid_argument for instances with a tree of
-// the host or a wide one.
+// The lights are those of the scene, whatever the options say. Throws LayoutError if a slot does not fit a
+// block, and std::invalid_argument for instances with a tree of the host, a wide one or shadows, and for
+// shadows without a tree.
 FramePlan plan_frame(Layout& layout, const SceneArrays& scene, const FrameOptions& options);
 
 // The parts of a frame: nothing where there is nothing to do.
@@ -56,6 +57,8 @@ void upload_frame(Executor& executor, const TreeSlots& tree, const TracePlan& tr
   executor.upload(trace.lighting, std::span<const Lighting>(&scene.lighting, 1));
   executor.upload(trace.film, std::span<const Film>(&film, 1));
   executor.upload(trace.srgb_thresholds, std::span<const uint>(thresholds));
+  if (trace.lights.sources.count > 0)
+    executor.upload(trace.lights.sources, std::span<const LightSource>(scene.lights));
 }
 
 // The same of a frame with or without instances.
@@ -65,6 +68,7 @@ void upload_frame(Executor& executor, const FramePlan& plan, const SceneArrays& 
   SceneArrays no_triangles;
   no_triangles.materials = scene.materials;
   no_triangles.lighting = scene.lighting;
+  no_triangles.lights = scene.lights;
   upload_frame(executor, plan.tree, plan.trace, no_triangles, film);
   const InstancePlan& instances = plan.levels->plan;
   executor.upload(instances.meshes, std::span<const MeshRange>(instances.ranges));

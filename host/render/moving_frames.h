@@ -18,6 +18,7 @@ namespace coppice {
 struct MovingOptions {
   BuildOptions build{};
   TraceOptions trace{};
+  EffectChanges effects{};      // beside what the scene calls for
   std::uint32_t under_way = 2;  // frames that may be on the device or waiting for it; at least 1
   Update update = Update::rebuild;
   bool tree_cost = false;  // the SAH cost of every frame's tree, which takes time
@@ -35,7 +36,8 @@ struct MovingFrame {
   bool rebuilt = true;        // else refitted, or kept
   bool kept = false;          // nothing of a scene with instances moves: its trees are those it began with
   std::uint32_t submits = 1;  // 2: triangles appeared that the tree of a refit has no leaves for
-  TraceCounts counts;
+  TraceCounts counts;         // of the camera's rays
+  TraceCounts shadow;         // of shadow rays
   BuildState state;
   double sah = 0;               // of the tree; 0 unless asked for
   std::span<const uint> image;  // RGBA8; until so many more frames as may be under way have been submitted
@@ -95,6 +97,7 @@ class MovingFrames {
     Slot<uint> image;
     Slot<BuildState> state;
     Slot<TraceCounters> counters;
+    Slot<TraceCounters> shadow;
     Slot<RefitState> refit;
     InstancesLeft instances;
   };

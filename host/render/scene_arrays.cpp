@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <limits>
 
 #include "scene/instances.h"
@@ -17,9 +18,36 @@ vec3 flush_to_zero(vec3 v) {
   return v;
 }
 
+// What is compared with 0 on the device has no denormals, and places no infinities.
+LightSource light_source(const Light& light) {
+  constexpr float farthest = 0x1p100f;
+  return {glm::clamp(light.place, -farthest, farthest), light.is_point ? LIGHT_POINT : LIGHT_DIRECTIONAL,
+          flush_to_zero(light.radiance), std::min(light.distance, farthest)};
+}
+
+// The light is part of the materials, or shading goes over a list of lights, which materials only reflect.
+void add_lights(SceneArrays& arrays, const Scene& scene, const EffectSet& effects) {
+  for (const Light& light : shaded_lights(scene, effects)) {
+    arrays.lights.push_back(light_source(light));
+    ++arrays.light_counts.lights;
+    arrays.light_counts.shadows += light.shadows;
+    arrays.light_counts.points |= light.is_point;
+  }
+  const bool listed = !arrays.lights.empty();
+  for (const Material& material : scene.materials) {
+    arrays.materials.push_back(
+        {material.emission + material.diffuse * scene.ambient_light,
+         listed ? flush_to_zero(material.diffuse) : material.diffuse * scene.light.radiance});
+  }
+  const vec3 direction = listed ? vec3(0) : scene.light.direction;
+  arrays.lighting = {direction, 0, vec3(0.80f, 0.87f, 0.94f), 0, vec3(0.24f, 0.45f, 0.78f), 0};
+}
+
 }  // namespace
 
-SceneArrays scene_arrays(const Scene& scene) {
+SceneArrays scene_arrays(const Scene& scene) { return scene_arrays(scene, effects_of(scene)); }
+
+SceneArrays scene_arrays(const Scene& scene, const EffectSet& effects) {
   SceneArrays arrays;
   std::vector<vec3> positions;
   positions.reserve(scene.positions.size());
@@ -29,11 +57,7 @@ SceneArrays scene_arrays(const Scene& scene) {
     arrays.triangles.push_back({positions[corner.x], positions[corner.y], positions[corner.z]});
   }
   arrays.material_index = scene.material_index;
-  for (const Material& material : scene.materials) {
-    arrays.materials.push_back({material.emission + material.diffuse * scene.ambient_light,
-                                material.diffuse * scene.light.radiance});
-  }
-  arrays.lighting = {scene.light.direction, 0, vec3(0.80f, 0.87f, 0.94f), 0, vec3(0.24f, 0.45f, 0.78f), 0};
+  add_lights(arrays, scene, effects);
   arrays.meshes = scene.meshes;
   for (const Instance& instance : scene.instances) {
     arrays.mesh_index.push_back(instance.mesh);

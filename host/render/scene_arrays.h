@@ -4,7 +4,8 @@
 #include <vector>
 
 #include "interface/instances.h"
-#include "scene/scene.h"
+#include "pipeline/lights.h"
+#include "scene/effect_set.h"
 
 namespace coppice {
 
@@ -14,6 +15,8 @@ struct SceneArrays {
   std::vector<uint> material_index;
   std::vector<SurfaceMaterial> materials;
   Lighting lighting = {};
+  std::vector<LightSource> lights;  // that shading goes over, see LightCounts; none: the one of `lighting`
+  LightCounts light_counts;
   // Of a scene with instances: its meshes, and of each instance the mesh and the transform.
   std::vector<InstancedMesh> meshes;
   std::vector<uint> mesh_index;
@@ -26,7 +29,9 @@ struct SceneArrays {
   }
 };
 
+// With the effects that it calls for, or with these.
 SceneArrays scene_arrays(const Scene& scene);
+SceneArrays scene_arrays(const Scene& scene, const EffectSet& effects);
 
 // Of the active triangles; zeroes where there are none.
 Aabb box_of(std::span<const Triangle> triangles);

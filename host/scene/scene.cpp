@@ -36,6 +36,17 @@ void move_to_scene(Scene& scene, const glm::dmat4& step) {
 
 }  // namespace
 
+void set_lights(Scene& scene, std::vector<Light> lights) {
+  const auto first = std::ranges::find(lights, false, &Light::is_point);
+  scene.light.radiance = glm::vec3(0);
+  if (first != lights.end()) {
+    scene.light = {first->place, first->radiance, first->shadows};
+    scene.light_origin = first->origin;
+    lights.erase(first);
+  }
+  scene.more_lights = std::move(lights);
+}
+
 std::uint32_t count_inactive(const Scene& scene) {
   return static_cast<std::uint32_t>(std::count_if(scene.indices.begin(), scene.indices.end(),
                                                   [&](glm::uvec3 t) { return !is_active(scene, t); }));
@@ -55,6 +66,11 @@ void bring_into_range(Scene& scene) {
     scale_point(scene.camera->position);
     scale_point(scene.camera->target);
   }
+  for (Light& light : scene.more_lights) {
+    if (!light.is_point) continue;
+    scale_point(light.place);
+    light.distance = scale(light.distance);
+  }
   scene.scale_exponent += exponent;
   const double factor = std::ldexp(1.0, exponent);
   move_to_scene(scene, glm::dmat4(glm::dmat3(factor)));
@@ -67,6 +83,7 @@ void stand_up(Scene& scene, std::string_view up) {
     for (glm::vec3& position : scene.positions) position = turn * position;
   }
   for (Instance& instance : scene.instances) instance.transform = turn * instance.transform;
+  for (Light& light : scene.more_lights) light.place = turn * light.place;
   scene.turn = turn * scene.turn;
   move_to_scene(scene, glm::dmat4(glm::dmat3(turn)));
   scene.camera.reset();

@@ -32,6 +32,17 @@ struct Material {
 struct DirectionalLight {
   glm::vec3 direction{0.426401f, 0.852803f, 0.301511f};  // unit length, from the surface towards the light
   glm::vec3 radiance{1.0f};                              // linear RGB
+  bool shadows = false;                                  // whether it casts them
+};
+
+// One of any number of lights beside the directional one.
+struct Light {
+  bool is_point = false;
+  glm::vec3 place{0.0f, 1.0f, 0.0f};  // of a point where it is, else unit length, towards the light
+  glm::vec3 radiance{1.0f};           // linear RGB; of a point at `distance`
+  float distance = 1.0f;              // of a point, whose light falls off with the square; the file's unit
+  bool shadows = false;
+  std::string origin;  // what the file calls it, such as "/lights/0"
 };
 
 // A pinhole camera. `up` need be neither unit length nor orthogonal to the line of sight, only not parallel
@@ -90,24 +101,30 @@ struct Scene {
   // Of the faces of an OBJ or PLY file, before they are cut into triangles (FaceDigest); 0 of others.
   std::uint64_t face_digest = 0;
   DirectionalLight light;
+  std::string light_origin;        // what the file calls it; empty for the default one
+  std::vector<Light> more_lights;  // at most MAX_LIGHTS - 1
   glm::vec3 ambient_light{0.35f};  // linear RGB, multiplies Material::diffuse
   // Null: nothing moves but a swarm. With instances it has no vertices: these are in InstancedMesh::motion.
   std::shared_ptr<const Motion> motion;
   std::vector<std::string> warnings;  // one line each, what was odd about the input but not fatal
 };
 
+// The scene's lights, in this order: the first directional one becomes Scene::light, if there is one.
+void set_lights(Scene& scene, std::vector<Light> lights);
+
 // Number of triangles with at least one non-finite vertex coordinate.
 std::uint32_t count_inactive(const Scene& scene);
 
 // Tracing multiplies up to three lengths in float. A scene whose largest active coordinate is not 0 and not
 // from 2^-30 to 2^30 is brought to [2^30, 2^31) by a power of two, which changes neither its shape nor its
-// tree; coordinates below 2^-179 of the largest are lost. Its camera comes along.
+// tree; coordinates below 2^-179 of the largest are lost. Its camera and its points of light come along.
 void bring_into_range(Scene& scene);
 
 inline constexpr std::array<std::string_view, 6> UP_AXES = {"x", "y", "z", "-x", "-y", "-z"};
 
 // Turns the scene so that the axis `up`, one of UP_AXES, becomes +y. With z up, the file's y then points away
-// from the default camera, as north on a map. But for "y" the scene's own camera is dropped.
+// from the default camera, as north on a map. But for "y" the scene's own camera is dropped. The directional
+// light stays where it is, the others turn with the scene.
 void stand_up(Scene& scene, std::string_view up);
 
 // A point or a direction of the file, as its user knows it, in the scene, and a point of the scene in the

@@ -13,6 +13,7 @@
 #include "scene/scene_compose.h"
 #include "scene/scene_file_deform.h"
 #include "scene/scene_file_instances.h"
+#include "scene/scene_file_lights.h"
 #include "scene/scene_file_meshes.h"
 #include "scene/scene_file_tracks.h"
 #include "scene/scene_source.h"
@@ -52,7 +53,6 @@ class SceneFileReader {
   void add_part(std::uint32_t node, const json& object, const std::string& pointer);
   void add_instance(std::uint32_t node, const json& object, const std::string& pointer);
   void set_material(Scene& mesh, const json& object, const std::string& pointer);
-  void read_light(Scene& scene) const;
   void read_camera();
   bool is_instanced() const { return sources_.keeps_instances && file_.contains("instances"); }
   Scene composed();
@@ -201,16 +201,6 @@ void SceneFileReader::read_objects() {
   }
 }
 
-void SceneFileReader::read_light(Scene& scene) const {
-  if (!file_.contains("light")) return;
-  const json& light = file_["light"];
-  if (light.contains("direction")) {
-    scene.light.direction = glm::vec3(direction_of(light["direction"], name_, "/light/direction"));
-  }
-  if (light.contains("radiance")) scene.light.radiance = vector_of(light["radiance"]);
-  if (light.contains("ambient")) scene.ambient_light = vector_of(light["ambient"]);
-}
-
 void SceneFileReader::read_camera() {
   if (file_.contains("camera")) composition_.camera = read_scene_camera(file_["camera"], name_, "/camera");
 }
@@ -220,7 +210,7 @@ void stand_up_whole(Scene& scene, std::string_view up) {
   std::optional<Camera> camera = scene.camera;
   stand_up(scene, up);
   if (up == "y") return;
-  scene.light.direction = scene.turn * scene.light.direction;
+  scene.light.direction = scene.turn * scene.light.direction;  // the others have turned
   if (!camera) return;
   for (glm::vec3* const vector : {&camera->position, &camera->target, &camera->up})
     *vector = scene.turn * *vector;
@@ -253,7 +243,7 @@ Scene SceneFileReader::read() {
   for (std::string& warning : scene.warnings) warning.insert(0, name_ + ": ");
   scene.warnings.insert(scene.warnings.begin(), warnings_.begin(), warnings_.end());
   if (scene.indices.empty()) scene.warnings.push_back(name_ + ": no triangles");
-  read_light(scene);
+  read_scene_lights(file_, name_, scene);
   stand_up_whole(scene, file_.value("up", "y"));
   return scene;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "interface/ploc.h"
+#include "scene/effect_set.h"
 #include "scene/load_gltf.h"
 #include "scene/scene.h"
 
@@ -65,6 +66,7 @@ struct SceneOptions {
   std::string spec = "grove";  // as open_scene takes it
   std::string up = "y";        // one of UP_AXES
   bool keep_instances = false;
+  EffectChanges effects{};  // beside what it calls for
 };
 
 }  // namespace coppice

@@ -18,6 +18,10 @@ struct RunCounts {
   std::vector<WideLevel> wide_levels;           // all of them; behind them none or empty ones
   std::vector<RefitLevel> refit_levels;         // the same of refits
   std::uint64_t rays = 0, hits = 0, steps = 0;  // of the whole trace
+  // Of its shadow rays. `could_be`: so many they were if every ray had one for each light that casts shadows.
+  struct {
+    std::uint64_t could_be = 0, rays = 0, hits = 0, steps = 0;
+  } shadow;
 };
 
 }  // namespace coppice

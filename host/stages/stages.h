@@ -6,6 +6,7 @@
 #include "interface/gather.h"
 #include "interface/hploc.h"
 #include "interface/instances.h"
+#include "interface/lights.h"
 #include "interface/morton.h"
 #include "interface/ploc.h"
 #include "interface/refit.h"
@@ -73,6 +74,9 @@
   STAGE(place_hits, PlaceHitsArgs, NoConstants, exactly)                               \
   STAGE(bounce_rays, BounceRaysArgs, NoConstants, nearly_bounced)                      \
   STAGE(shade, ShadeArgs, ShadeConstants, nearly_radiance)                             \
+  STAGE(shadow_marks, ShadowMarksArgs, NoConstants, exactly)                           \
+  STAGE(shadow_rays, ShadowRaysArgs, NoConstants, nearly_shadow_rays)                  \
+  STAGE(shade_lights, ShadeLightsArgs, ShadeLightsConstants, nearly_radiance)          \
   STAGE(show, ShowArgs, ShowConstants, nearly_radiance)                                \
   STAGE(shade_pixels, ShadePixelsArgs, ShadeConstants, nearly_image)                   \
   STAGE(trace_pixels, TracePixelsArgs, TracePixelsConstants, nearly_pixels)            \
@@ -92,13 +96,16 @@ inline constexpr std::span<const NearlySlot> exactly;
 inline constexpr NearlySlot nearly_rays[] = {{"rays", Nearly::rays}};
 inline constexpr NearlySlot nearly_hits[] = {{"hits", Nearly::hits}, {"counters", Nearly::counters}};
 inline constexpr NearlySlot nearly_any_hits[] = {{"any_hits", Nearly::any_hits},
-                                                 {"counters", Nearly::counters}};
+                                                 {"counters", Nearly::counters},
+                                                 {"shadow_hits", Nearly::any_hits},
+                                                 {"shadow_counters", Nearly::counters}};
 inline constexpr NearlySlot nearly_boxes[] = {{"candidates", Nearly::candidates},
                                               {"candidate_counts", Nearly::candidate_counts},
                                               {"counters", Nearly::counters}};
 inline constexpr NearlySlot nearly_levels[] = {
     {"hits", Nearly::hits}, {"hit_instances", Nearly::hit_instances}, {"counters", Nearly::counters}};
 inline constexpr NearlySlot nearly_bounced[] = {{"bounced_rays", Nearly::rays}};
+inline constexpr NearlySlot nearly_shadow_rays[] = {{"shadow_rays", Nearly::rays}};
 inline constexpr NearlySlot nearly_radiance[] = {{"radiance", Nearly::radiance}};
 inline constexpr NearlySlot nearly_image[] = {{"image", Nearly::image}};
 inline constexpr NearlySlot nearly_pixels[] = {{"image", Nearly::image}, {"counters", Nearly::counters}};

@@ -34,6 +34,18 @@ Bytes pairs_of(const RunCounts& counts) { return counts.steps * 2 * sizeof(Node)
 Bytes wide_nodes_of(const RunCounts& counts) { return counts.steps * sizeof(WideNode); }
 Bytes triangles_of(const RunCounts& counts) { return counts.hits * sizeof(Triangle); }
 
+// Of shadow rays, the part of those that `rays` rays of the picture have for one light.
+Bytes shadow_share(Bytes sum, Bytes rays, const RunCounts& counts) {
+  if (counts.shadow.could_be == 0) return 0;
+  return static_cast<Bytes>(static_cast<double>(sum) * static_cast<double>(rays) /
+                            static_cast<double>(counts.shadow.could_be));
+}
+
+Bytes shadow_walk_bytes(Bytes rays, Bytes step, const RunCounts& counts) {
+  return shadow_share(counts.shadow.rays, rays, counts) * ray_and_word +
+         shadow_share(counts.shadow.steps * step + counts.shadow.hits * sizeof(Triangle), rays, counts);
+}
+
 }  // namespace
 
 Bytes camera_rays(const CameraRaysArgs& a, const RunCounts&) {
@@ -58,10 +70,12 @@ Bytes trace_wide_single(const TraceWideArgs& a, const RunCounts& counts) {
 }
 
 Bytes trace_any(const TraceAnyArgs& a, const RunCounts& counts) {
+  if (counts.shadow.could_be) return shadow_walk_bytes(a.ray_count, 2 * sizeof(Node), counts);
   return walk_bytes(a, ray_and_word, pairs_of(counts) + triangles_of(counts), counts);
 }
 
 Bytes trace_wide_any(const TraceWideAnyArgs& a, const RunCounts& counts) {
+  if (counts.shadow.could_be) return shadow_walk_bytes(a.ray_count, sizeof(WideNode), counts);
   return walk_bytes(a, ray_and_word, wide_nodes_of(counts) + triangles_of(counts), counts);
 }
 
@@ -109,6 +123,30 @@ Bytes shade(const ShadeArgs& a, const RunCounts& counts) {
          share(counts.hits, a.ray_count, counts) * (4 + sizeof(SurfaceMaterial) + sizeof(Triangle));
 }
 
+// Of each ray its hit and its mark, of a hit its direction and its surface.
+Bytes shadow_marks(const ShadowMarksArgs& a, const RunCounts& counts) {
+  return Bytes{a.ray_count} * (sizeof(Hit) + 4) +
+         share(counts.hits, a.ray_count, counts) *
+             (sizeof(vec3) + 4 + sizeof(SurfaceMaterial) + sizeof(Triangle));
+}
+
+// Of each ray its mark and its place.
+Bytes shadow_rays(const ShadowRaysArgs& a, const RunCounts& counts) {
+  return Bytes{a.ray_count} * 8 + shadow_share(counts.shadow.rays, a.ray_count, counts) *
+                                      (sizeof(Hit) + sizeof(vec3) + sizeof(Triangle) + sizeof(Ray));
+}
+
+// Of each ray its triangle, of a hit that some light reaches all that is shaded.
+Bytes shade_lights(const ShadeLightsArgs& a, const RunCounts& counts) {
+  constexpr Bytes of_surface =
+      sizeof(Hit) - 4 + sizeof(vec3) + 4 + sizeof(SurfaceMaterial) + sizeof(Triangle) + 2 * sizeof(vec3);
+  if (a.marks.value == 0)
+    return Bytes{a.ray_count} * 4 + share(counts.hits, a.ray_count, counts) * of_surface;
+  return Bytes{a.ray_count} * 4 + share(counts.hits, a.ray_count, counts) * 4 +
+         shadow_share(counts.shadow.rays, a.ray_count, counts) * 8 +
+         shadow_share(counts.shadow.rays - counts.shadow.hits, a.ray_count, counts) * of_surface;
+}
+
 // Of each ray its steps or its triangle, of each hit what is shown of it.
 Bytes show(const ShowArgs& a, const RunCounts& counts) {
   const Bytes radiance = sizeof(vec3) * (a.sample_index == 0 ? 1 : 2);
@@ -127,10 +165,9 @@ Bytes shade_pixels(const ShadePixelsArgs& a, const RunCounts& counts) {
 }
 
 Bytes trace_pixels(const TracePixelsArgs& a, const RunCounts& counts) {
-  return Bytes{a.ray_count} * 4 +
-         share(counts.steps / TRACE_PACKET * sizeof(WideNode) +
-                   counts.hits * (4 + sizeof(SurfaceMaterial) + sizeof(Triangle)),
-               a.ray_count, counts);
+  return Bytes{a.ray_count} * 4 + share(counts.steps / TRACE_PACKET * sizeof(WideNode) +
+                                            counts.hits * (4 + sizeof(SurfaceMaterial) + sizeof(Triangle)),
+                                        a.ray_count, counts);
 }
 
 Bytes resolve(const ResolveArgs& a, const RunCounts&) { return Bytes{a.ray_count} * (sizeof(vec3) + 4); }

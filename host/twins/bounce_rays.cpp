@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "interface/trace.h"
+#include "twins/leave_surface.h"
 #include "twins/vectors.h"
 
 namespace coppice::twins {
@@ -33,22 +34,6 @@ std::pair<float, float> disk_point(RandomWords& random) {
     if (x * x + y * y < 1) return {x, y};
   }
   return {0, 0};
-}
-
-float largest(float a, float b, float c) {
-  return std::fmax(std::fmax(std::fabs(a), std::fabs(b)), std::fabs(c));
-}
-
-// Off the plane by 2^-20 of the triangle's distance from zero and of its size: Waechter and Binder 2019.
-vec3 leave_surface(const Triangle& t, const Hit& hit, const vec3& normal) {
-  const vec3 edge_b = t.b - t.a, edge_c = t.c - t.a;
-  const float size = std::fmax(largest(edge_b.x, edge_b.y, edge_b.z), largest(edge_c.x, edge_c.y, edge_c.z));
-  float distance = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    distance += std::fabs(normal[axis]) * ((largest(t.a[axis], t.b[axis], t.c[axis]) + size) * 0x1p-20f);
-  }
-  const vec3 point = t.a * (1.0f - hit.u - hit.v) + t.b * hit.u + t.c * hit.v;
-  return point + normal * distance;
 }
 
 // Duff et al. 2017, "Building an Orthonormal Basis, Revisited".

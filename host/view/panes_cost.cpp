@@ -46,6 +46,10 @@ void Viewer::cost_pane() {
     ImGui::Text("%.1f steps a ray, %.0f %% hit",
                 static_cast<double>(counts.steps) / static_cast<double>(counts.rays),
                 100.0 * static_cast<double>(counts.hits) / static_cast<double>(counts.rays));
+  const TraceCounts& shadow = statistics_.last.shadow;
+  if (shadow.rays != 0)
+    ImGui::Text("%.2f M shadow rays, %.0f %% blocked", static_cast<double>(shadow.rays) * 1e-6,
+                100.0 * static_cast<double>(shadow.hits) / static_cast<double>(shadow.rays));
   tree_controls();
   if (ImGui::CollapsingHeader("memory")) {
     ImGui::Text("%s on the device", size_text(frames_->device_bytes()).c_str());

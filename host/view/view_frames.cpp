@@ -18,10 +18,11 @@ namespace {
 // Kernels that a reader takes for one; else a kernel is a group of its own.
 std::string group_of(std::string_view stage) {
   constexpr std::pair<std::string_view, const char*> prefixes[] = {
-      {"vertex_", "vertices"},    {"gather_", "bounds"},  {"primitive_", "bounds"}, {"sort_", "sort"},
-      {"ploc_", "PLOC"},          {"hploc_", "H-PLOC"},   {"wide_", "wide"},        {"trace_", "trace"},
-      {"morton_", "Morton"},      {"refit_", "refit"},    {"camera_", "camera"},    {"move_", "instances"},
-      {"instance_", "instances"}, {"copy_", "instances"}, {"place_", "instances"}};
+      {"vertex_", "vertices"},    {"gather_", "bounds"},  {"primitive_", "bounds"},  {"sort_", "sort"},
+      {"ploc_", "PLOC"},          {"hploc_", "H-PLOC"},   {"wide_", "wide"},         {"trace_", "trace"},
+      {"morton_", "Morton"},      {"refit_", "refit"},    {"camera_", "camera"},     {"move_", "instances"},
+      {"instance_", "instances"}, {"copy_", "instances"}, {"place_", "instances"},   {"shadow_", "shadows"},
+      {"scan_", "shadows"},       {"prefix_", "shadows"}, {"shade_lights", "lights"}};
   for (const auto& [prefix, name] : prefixes) {
     if (stage.starts_with(prefix)) return name;
   }
@@ -53,6 +54,14 @@ std::vector<std::string> mark_groups(std::vector<Step>& steps) {
   return groups;
 }
 
+// Without a tree there are no shadows.
+EffectSet effects_for_view(const SceneOptions& options, const BuilderChoice& builder, const Scene& scene) {
+  EffectSet effects = effects_of(scene, options.effects);
+  if (!builder.on_device() && builder.name == "none" && effects.has(Effect::shadows))
+    effects.override(Effect::shadows, false);
+  return effects;
+}
+
 }  // namespace
 
 bool keeps_instances(const BuilderChoice& builder, const WalkChoice& walk) {
@@ -68,9 +77,12 @@ OpenedScene open_for_view(const SceneOptions& options, const BuilderChoice& buil
   const auto silently = [](const std::string&) {};
   opened.scene = open_scene_with_room(kept, nullptr, {}, silently);
   opened.has_instances = !opened.scene.instances.empty();
-  if (opened.has_instances && !options.keep_instances)
-    opened.scene = open_scene_with_room(options, nullptr, {}, silently);
-  opened.arrays = scene_arrays(opened.scene);
+  // Shadow rays are traced through trees of one level.
+  kept.keep_instances =
+      options.keep_instances && !effects_of(opened.scene, options.effects).has(Effect::shadows);
+  if (opened.has_instances && !kept.keep_instances)
+    opened.scene = open_scene_with_room(kept, nullptr, {}, silently);
+  opened.arrays = scene_arrays(opened.scene, effects_for_view(options, builder, opened.scene));
   opened.box = box_of_scene(opened.scene, opened.arrays);
   if (builder.on_device()) return opened;
   const auto start = std::chrono::steady_clock::now();
@@ -97,7 +109,7 @@ FramePlan ViewFrames::plan_all(ViewFrames& frames, CheckedDevice& device) {
     frames.at_ = plan_motion(frames.layout_, frames.motion_);
   } else {
     options.node_count = opened.bvh.nodes.size();
-    if (opened.bvh.nodes.empty()) options.trace.walk = Walk::brute_force;
+    if (opened.builder.name == "none") options.trace.walk = Walk::brute_force;
   }
   FramePlan plan = plan_frame(frames.layout_, opened.arrays, options);
   if (frames.options_.update != Update::rebuild && plan.build && opened.scene.motion)
@@ -265,9 +277,11 @@ ViewedFrame ViewFrames::take() {
   if (const std::string errors = describe_error_word(error_word); !errors.empty())
     throw DeviceError("the frame at second " + std::to_string(under_way_->seconds) + ": " + errors);
   frame.counts = counts_of(executor_.read(plan_.trace.counters)[0]);
+  if (plan_.trace.lights.counters.count > 0)
+    frame.shadow = counts_of(executor_.read(plan_.trace.lights.counters)[0]);
   if (frame.built || frame.refitted)
-    chooser_.note(
-        {frame.built, under_way_->in_vain, update_ms, frame.device_ms - update_ms, frame.counts.steps});
+    chooser_.note({frame.built, under_way_->in_vain, update_ms, frame.device_ms - update_ms,
+                   frame.counts.steps + frame.shadow.steps});
   if (plan_.trace.show.range.count > 0)
     frame.seen = seen_in(executor_.read(plan_.trace.show.range)[0], options_.show.show);
   const ViewedFrame taken = std::move(frame);

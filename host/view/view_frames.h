@@ -55,8 +55,9 @@ struct ViewedFrame {
   bool refitted = false;            // or only its boxes
   std::vector<KernelGroup> groups;  // empty on a device without timestamps
   double device_ms = 0;
-  TraceCounts counts;
-  ShowSpan seen;  // of a view with a range
+  TraceCounts counts;  // of the camera's rays
+  TraceCounts shadow;  // of shadow rays
+  ShowSpan seen;       // of a view with a range
 };
 
 struct ViewedTree {

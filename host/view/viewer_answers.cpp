@@ -56,6 +56,7 @@ std::string Viewer::render_arguments() const {
                  asked_.builder.radius);
   if (!asked_.walk.automatic()) text += " " + asked_.walk.said;
   if (run_.trace.samples != 1) text += format(" --spp %u", run_.trace.samples);
+  if (!asked_.scene.effects.empty()) text += " --effects=" + asked_.scene.effects.text();
   if (show.show != Show::color) text += " --show " + std::string(name_of(show.show));
   if (show.show == Show::steps && show.most_steps) text += format(" --most-steps %u", show.most_steps);
   if (show.show == Show::clusters) text += format(" --round %u", show.round);

@@ -126,6 +126,9 @@ std::string complaint_about(const Scene& scene) {
     if (!is_one_line(warning)) return "warning '" + warning + "'";
   }
   if (!is_finite(scene.light.direction)) return "light";
+  for (const Light& light : scene.more_lights) {
+    if (!is_finite(light.place) || !is_finite(light.radiance)) return "light " + light.origin;
+  }
   if (scene.motion) {
     const std::span<const glm::vec3> positions(scene.positions);
     const std::string complaint =

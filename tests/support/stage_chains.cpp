@@ -16,6 +16,7 @@
 #include "scene/hard_cases.h"
 #include "stages/stages.h"
 #include "support/instances.h"
+#include "support/lit_scene.h"
 #include "support/moving_scenes.h"
 
 namespace coppice {
@@ -30,6 +31,7 @@ struct Frame {
   uint show = SHOW_COLOR;
   std::uint32_t samples = 1;
   bool keep_hits = true;
+  bool lights = false;  // two, which cast shadows
 };
 constexpr Frame frames[] = {
     {1000, DeviceBuilder::ploc, true, Walk::binary},
@@ -38,15 +40,22 @@ constexpr Frame frames[] = {
     {1000, DeviceBuilder::hploc, true, Walk::wide_packets, SHOW_COLOR, 1, false},
     {300, DeviceBuilder::ploc, true, Walk::brute_force, SHOW_COLOR, 2},
     {SORT_SCAN_TILE + 100, DeviceBuilder::ploc, false, Walk::binary},  // one tile alone sorts without a scan
-    {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_DEPTH}};
+    {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_DEPTH},
+    {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 1, true, true},
+    {300, DeviceBuilder::ploc, true, Walk::wide_single, SHOW_COLOR, 1, true, true}};
 constexpr std::size_t scan_and_copy = std::size(frames), inputs = scan_and_copy + 1, vertices = inputs + 1,
                       refits = vertices + 1, instances = refits + 1, chain_count = instances + 1;
 
 Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
-  const Scene scene = find_hard_case("nested")->make(frame.triangles, 1);
+  Scene scene = frame.lights ? triangles_over_plane(frame.triangles)
+                             : find_hard_case("nested")->make(frame.triangles, 1);
+  if (frame.lights) {
+    scene.light.shadows = true;
+    scene.more_lights.push_back({.is_point = true, .place = {1, 3, 2}, .shadows = true, .origin = ""});
+  }
   SceneArrays arrays = scene_arrays(scene);
   arrays.lighting = {};  // padding and all
-  arrays.lighting.light_direction = {0.6f, 0.8f, 0};
+  if (!frame.lights) arrays.lighting.light_direction = {0.6f, 0.8f, 0};
   arrays.lighting.sky_horizon = {0.8f, 0.9f, 1};
   Layout layout(device.properties().max_block_bytes);
   BuildOptions options;
@@ -58,6 +67,7 @@ Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
   trace_options.show = frame.show;
   trace_options.samples = frame.samples;
   trace_options.keep_hits = frame.keep_hits;
+  trace_options.lights = arrays.light_counts;
   std::optional<WidePlan> wide;
   if (is_wide(frame.walk)) wide = plan_wide(layout, build, &build);
   const TracePlan trace =

@@ -1,0 +1,120 @@
+#include <algorithm>
+#include <numeric>
+
+#include "measure/effects_report.h"
+#include "measure/measure_build.h"
+#include "render/frame.h"
+#include "stages/stages.h"
+
+namespace coppice {
+
+namespace {
+
+using Kernel = RecordedPicture::Kernel;
+
+// Whether a step is there for this effect alone.
+bool belongs_to(const Step& step, Effect effect) {
+  const ShadeLightsArgs* const shading = args_of(step, stages::shade_lights);
+  if (shading) return (shading->marks.value != 0) == (effect == Effect::shadows);
+  if (effect != Effect::shadows) return false;
+  const StageDeclaration* const stage = stage_of(step);
+  const StageDeclaration* const own[] = {&stages::shadow_marks,   &stages::shadow_rays,
+                                         &stages::scan_tile_sums, &stages::prefix_scan,
+                                         &stages::trace_any,      &stages::trace_wide_any};
+  return std::ranges::find(own, stage) != std::end(own);
+}
+
+void count_kernel(std::vector<Kernel>& kernels, const char* name) {
+  const auto known = std::ranges::find(kernels, name, &Kernel::name);
+  if (known != kernels.end())
+    ++known->dispatches;
+  else
+    kernels.push_back({name, 1});
+}
+
+std::uint32_t dispatches_of(const std::vector<Kernel>& kernels, const std::string& name) {
+  const auto known = std::ranges::find(kernels, name, &Kernel::name);
+  return known == kernels.end() ? 0 : known->dispatches;
+}
+
+// What is in the first and not in the second.
+std::vector<Kernel> less(const std::vector<Kernel>& kernels, const std::vector<Kernel>& others) {
+  std::vector<Kernel> rest;
+  for (const Kernel& kernel : kernels) {
+    const std::uint32_t other = dispatches_of(others, kernel.name);
+    if (kernel.dispatches > other) rest.push_back({kernel.name, kernel.dispatches - other});
+  }
+  return rest;
+}
+
+double ms_of(const KernelTable& table, const std::string& name) {
+  const auto row = std::ranges::find(table.rows, name, &KernelTime::name);
+  return row == table.rows.end() ? 0 : row->ms;
+}
+
+// By the kernels of which one picture has more than the other.
+std::optional<double> ms_between(const EffectCost& cost, const KernelTable& with,
+                                 const KernelTable& without) {
+  if (with.untimed || without.untimed) return std::nullopt;
+  double ms = 0;
+  for (const std::vector<Kernel>* const kernels : {&cost.kernels, &cost.instead_of}) {
+    for (const Kernel& kernel : *kernels) ms += ms_of(with, kernel.name) - ms_of(without, kernel.name);
+  }
+  return ms;
+}
+
+}  // namespace
+
+RecordedPicture recorded_picture(const SceneArrays& arrays, const FrameOptions& options) {
+  Layout layout(~std::uint64_t{0});
+  const FramePlan plan = plan_frame(layout, arrays, options);
+  std::vector<std::uint64_t> addresses;
+  for (std::uint64_t block = 1; block <= layout.block_bytes().size(); ++block)
+    addresses.push_back(block << 48);
+  Chain chain(addresses);
+  TracePieces pieces = plan.pieces(plan.trace);
+  while (!pieces.done()) pieces.append(chain, ~std::uint64_t{0});
+  RecordedPicture recorded;
+  recorded.device_bytes = device_bytes(layout);
+  for (const SlotListing& slot : layout.slots()) recorded.slots.push_back(slot.name);
+  for (const Step& step : chain.steps()) {
+    if (stage_of(step)) count_kernel(recorded.kernels, stage_of(step)->name);
+    for (std::size_t i = 0; i < effect_count; ++i)
+      recorded.effect_steps[i] += belongs_to(step, static_cast<Effect>(i));
+  }
+  return recorded;
+}
+
+EffectsReport measure_effects(CheckedDevice& device, const Scene& scene, const FrameRuns& given) {
+  FrameRuns frame = given;
+  frame.split = true;
+  const EffectSet effects = effects_of(scene, frame.effects);
+  const auto recorded_with = [&](const EffectSet& set) {
+    FrameOptions options{.trace = frame.trace};
+    if (frame.builder.on_device()) options.build = device.build_options(frame.builder.least_build_options());
+    return recorded_picture(scene_arrays(scene, set), options);
+  };
+  const RecordedPicture all = recorded_with(effects);
+  const FrameReport with = measure_frame(device, scene, frame);
+  EffectsReport report{scene.name, with.trace_device, with.trace_ms, with.rays, {}};
+  for (std::size_t i = 0; i < effect_count; ++i) {
+    const Effect effect = static_cast<Effect>(i);
+    EffectCost cost{.effect = effect, .state = effects.of(effect), .own_steps = all.effect_steps[i]};
+    if (effect == Effect::shadows) cost.rays = with.shadow.rays;  // counted, where it is off, too
+    if (cost.state.on) {
+      FrameRuns other = frame;
+      other.effects = frame.effects.but(effect, false);
+      const RecordedPicture rest = recorded_with(effects_of(scene, other.effects));
+      cost.kernels = less(all.kernels, rest.kernels);
+      cost.instead_of = less(rest.kernels, all.kernels);
+      cost.bytes = static_cast<std::int64_t>(all.device_bytes) - static_cast<std::int64_t>(rest.device_bytes);
+      const FrameReport without = measure_frame(device, scene, other);
+      cost.rays = with.shadow.rays - without.shadow.rays;
+      cost.ms = ms_between(cost, with.kernels, without.kernels);
+    }
+    report.costs.push_back(std::move(cost));
+  }
+  return report;
+}
+
+}  // namespace coppice

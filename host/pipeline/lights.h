@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+
+#include "interface/lights.h"
+#include "pipeline/build_plan.h"
+
+namespace coppice {
+
+// Lights that shading goes over one by one, in the place of the plain one of Lighting. The last of them cast
+// shadows.
+struct LightCounts {
+  std::uint32_t lights = 0;  // none: the plain one
+  std::uint32_t shadows = 0;
+  bool points = false;  // whether some are points
+
+  bool operator==(const LightCounts&) const = default;
+};
+
+// What lights and shadows keep, for a band of rays; all empty where there are no lights. One light after the
+// other takes the same queue of shadow rays.
+struct LightSlots {
+  Slot<LightSource> sources;  // in
+  // Where some cast shadows:
+  Slot<uvec4> marks, places;  // a word a ray
+  Slot<uint> scan_status;
+  Slot<Ray> shadow_rays;  // compacted
+  Slot<uint> shadow_count;
+  Slot<uint> any_hits;
+  Slot<TraceCounters> counters;  // of shadow rays alone
+};
+
+// Throws LayoutError if a slot does not fit a block, std::invalid_argument for more than MAX_LIGHTS.
+LightSlots plan_lights(Layout& layout, const LightCounts& counts, std::uint32_t band_rays);
+
+struct TraceOptions;
+
+// Rays of a picture and what they have hit.
+struct LitRays {
+  TriangleBuffer triangles;
+  UintBuffer material_index;
+  SurfaceMaterialBuffer materials;
+  RayBuffer rays;
+  HitBuffer hits;
+  Vec3Buffer radiance;
+  std::uint32_t count;
+};
+
+// Adds to the radiance what the surfaces reflect of all lights: those without shadows in one step; for each
+// other one marks, their prefix sums, shadow rays, any hits through the tree, shading. Throws
+// std::invalid_argument for shadows by brute force.
+void append_lights(Chain& chain, const TreeSlots& tree, const LightSlots& slots, const LitRays& rays,
+                   const TraceOptions& options);
+
+}  // namespace coppice

@@ -1,0 +1,105 @@
+#include "scene/effect_set.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "scene/input_error.h"
+#include "scene/printable.h"
+
+namespace coppice {
+
+namespace {
+
+bool is_bright(const glm::vec3& radiance) { return radiance != glm::vec3(0); }
+
+// All that light anything, the directional one first.
+std::vector<Light> bright_lights(const Scene& scene) {
+  std::vector<Light> lights;
+  const DirectionalLight& first = scene.light;
+  if (is_bright(first.radiance)) {
+    const std::string origin = scene.light_origin.empty() ? "the directional light" : scene.light_origin;
+    lights.push_back({false, first.direction, first.radiance, 1, first.shadows, origin});
+  }
+  std::ranges::copy_if(scene.more_lights, std::back_inserter(lights),
+                       [](const Light& light) { return is_bright(light.radiance); });
+  return lights;
+}
+
+std::string known_effects() {
+  std::string names;
+  for (const std::string_view name : EFFECT_NAMES) names.append(names.empty() ? "" : ", ").append(name);
+  return names;
+}
+
+}  // namespace
+
+void EffectSet::call(Effect effect, const std::string& by) {
+  State& state = states_[static_cast<std::size_t>(effect)];
+  if (!state.called_by.empty()) return;
+  state.on = true;
+  state.called_by = by;
+}
+
+void EffectSet::override(Effect effect, bool on) {
+  State& state = states_[static_cast<std::size_t>(effect)];
+  state.on = on;
+  state.overridden = true;
+}
+
+// THE TABLE of docs/effects.md, line by line.
+EffectSet effects_of(const Scene& scene, const EffectChanges& changes) {
+  EffectSet effects;
+  std::size_t count = 0;
+  for (const Light& light : bright_lights(scene)) {
+    ++count;
+    if (light.is_point) effects.call(Effect::lights, light.origin + ", a point");
+    if (count > 1) effects.call(Effect::lights, light.origin + ", light number " + std::to_string(count));
+    if (light.shadows) effects.call(Effect::shadows, light.origin + ", which casts shadows");
+  }
+  return changes.applied_to(effects);
+}
+
+EffectChanges::EffectChanges(std::string_view text) : text_(text) {
+  while (!text.empty()) {
+    const std::size_t comma = text.find(',');
+    const std::string_view word = text.substr(0, comma);
+    const auto known =
+        word.empty() ? std::end(EFFECT_NAMES) : std::ranges::find(EFFECT_NAMES, word.substr(1));
+    if (known == std::end(EFFECT_NAMES) || (word[0] != '+' && word[0] != '-')) {
+      throw InputError("'" + printable(word) + "' is no + or - and an effect behind it: there are " +
+                       known_effects());
+    }
+    changes_.push_back({static_cast<Effect>(known - EFFECT_NAMES), word[0] == '+'});
+    if (comma + 1 == text.size()) throw InputError("nothing behind the last comma");
+    text.remove_prefix(comma == std::string_view::npos ? text.size() : comma + 1);
+  }
+}
+
+EffectSet EffectChanges::applied_to(EffectSet effects) const {
+  for (const Change& change : changes_) effects.override(change.effect, change.on);
+  return effects;
+}
+
+EffectChanges EffectChanges::but(Effect effect, bool on) const {
+  EffectChanges changes = *this;
+  changes.changes_.push_back({effect, on});
+  changes.text_ += std::string(text_.empty() ? "" : ",") + (on ? "+" : "-") + std::string(name_of(effect));
+  return changes;
+}
+
+std::vector<Light> shaded_lights(const Scene& scene, const EffectSet& effects) {
+  std::vector<Light> lights = bright_lights(scene);
+  // Without the effect only the directional light, if it is one.
+  if (!effects.has(Effect::lights)) {
+    std::erase_if(lights, [](const Light& light) { return light.is_point; });
+    if (lights.size() > 1) lights.resize(1);
+  }
+  const bool shadows = effects.has(Effect::shadows);
+  const bool all_cast = shadows && effects.of(Effect::shadows).overridden;
+  for (Light& light : lights) light.shadows = shadows && (light.shadows || all_cast);
+  if (!effects.has(Effect::lights) && !shadows) return {};
+  std::stable_partition(lights.begin(), lights.end(), [](const Light& light) { return !light.shadows; });
+  return lights;
+}
+
+}  // namespace coppice

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace coppice {
+
+// What is simulated only where a scene calls for it. The table in docs/effects.md says what calls for which,
+// and what each adds.
+enum class Effect : std::uint32_t { lights, shadows };
+
+inline constexpr std::string_view EFFECT_NAMES[] = {"lights", "shadows"};
+inline constexpr std::size_t effect_count = std::size(EFFECT_NAMES);
+
+constexpr std::string_view name_of(Effect effect) { return EFFECT_NAMES[static_cast<std::size_t>(effect)]; }
+
+// The effects of a scene, and why each is on or off.
+class EffectSet {
+ public:
+  struct State {
+    bool on = false;
+    std::string called_by;  // what called for it, turned off or not; empty: nothing did
+    bool overridden = false;
+  };
+
+  bool has(Effect effect) const { return of(effect).on; }
+  const State& of(Effect effect) const { return states_[static_cast<std::size_t>(effect)]; }
+
+  // The first thing that calls for an effect is the one that is named.
+  void call(Effect effect, const std::string& by);
+  void override(Effect effect, bool on);
+
+ private:
+  std::array<State, effect_count> states_;
+};
+
+// Effects that somebody wants or does not want, whatever the scene calls for.
+class EffectChanges {
+ public:
+  EffectChanges() = default;
+  // Of a text like "+shadows,-lights". Throws InputError for anything else.
+  explicit EffectChanges(std::string_view text);
+
+  EffectSet applied_to(EffectSet effects) const;
+  // With one change more.
+  EffectChanges but(Effect effect, bool on) const;
+  bool empty() const { return changes_.empty(); }
+  const std::string& text() const { return text_; }
+
+ private:
+  struct Change {
+    Effect effect;
+    bool on;
+  };
+  std::vector<Change> changes_;
+  std::string text_;
+};
+
+// What a scene calls for, changed or not.
+EffectSet effects_of(const Scene& scene, const EffectChanges& changes = {});
+
+// The lights that shading goes over with these effects, those that cast shadows last, each in the scene's
+// order; none where the directional light alone, without shadows, is all there is.
+std::vector<Light> shaded_lights(const Scene& scene, const EffectSet& effects);
+
+}  // namespace coppice

@@ -1,0 +1,139 @@
+// The commands and their effects: what is called for, explained, overridden, counted, and refused.
+#include <nlohmann/json.hpp>
+
+#include "support/command.h"
+
+namespace coppice {
+namespace {
+
+using nlohmann::json;
+
+// A triangle over a larger one, and lights.
+class CommandEffects : public Command {
+ protected:
+  void SetUp() override {
+    Command::SetUp();
+    write("two.obj", "v -9 0 9\nv 9 0 9\nv 0 0 -18\nv -1 1 1\nv 1 1 1\nv 0 1 -2\nf 1 2 3\nf 4 5 6\n");
+    write("scene.json", R"({
+      "meshes": { "two": { "file": "two.obj" } },
+      "objects": [ { "mesh": "two" } ],
+      "camera": { "position": [3, 8, 6], "target": [0, 0, 0] },
+      "lights": [ { "direction": [1, 2, 0], "shadows": true },
+                  { "position": [0, 3, 1], "shadows": true }, { "position": [2, 2, 2] } ] })");
+  }
+
+  static json report_of(const std::string& arguments) {
+    const Outcome outcome = run(arguments + " --size 64x48 --json -");
+    EXPECT_EQ(outcome.status, 0) << arguments << ": " << outcome.err;
+    return outcome.status == 0 ? json::parse(outcome.out) : json();
+  }
+};
+
+TEST_F(CommandEffects, RenderCountsShadowRaysAndNamesTheEffects) {
+  const json with = report_of("render scene.json -o out.png --validate");
+  EXPECT_EQ(with["effects"], json({"ambient", "directional_light", "lights", "shadows"}));
+  EXPECT_EQ(with["rays"]["primary"], 64 * 48);
+  EXPECT_GT(with["rays"]["shadow"], 64 * 48 / 2);
+  const json without = report_of("render scene.json -o out.png --effects=-shadows");
+  EXPECT_EQ(without["effects"], json({"ambient", "directional_light", "lights"}));
+  EXPECT_EQ(without["rays"]["shadow"], 0);
+  EXPECT_NE(with["image_hash"], without["image_hash"]);
+  const json plain = report_of("render scene.json -o out.png --effects=-shadows,-lights");
+  EXPECT_EQ(plain["effects"], json({"ambient", "directional_light"}));
+  std::vector<std::string> kernels;
+  for (const json& kernel : plain["kernels"]) kernels.push_back(kernel["name"]);
+  if (!kernels.empty()) {  // a device without timestamps has none
+    EXPECT_EQ(std::ranges::count(kernels, "shade_pixels") + std::ranges::count(kernels, "trace_pixels"), 1);
+    EXPECT_EQ(std::ranges::count(kernels, "shade"), 0);
+    EXPECT_EQ(std::ranges::count(kernels, "shade_lights"), 0);
+  }
+}
+
+TEST_F(CommandEffects, BothTracersAndAllTreesSeeTheSameShadows) {
+  const json device = report_of("render scene.json -o out.png --spp 2");
+  for (const char* how : {"--tree binary", "--tree wide-single", "--builder sah", "--builder gpu-hploc"}) {
+    const json other = report_of("render scene.json -o out.png --spp 2 " + std::string(how));
+    EXPECT_EQ(other["image_hash"], device["image_hash"]) << how;
+    EXPECT_EQ(other["rays"], device["rays"]) << how;
+  }
+  // The CPU tracer computes in double: a ray at the border of a shadow may go either way.
+  for (const char* how : {"--builder ploc", "--builder none"}) {
+    const json cpu = report_of("render scene.json -o out.png --spp 2 --tracer cpu " + std::string(how));
+    EXPECT_NEAR(cpu["rays"]["shadow"].get<double>(), device["rays"]["shadow"].get<double>(), 4) << how;
+    EXPECT_EQ(cpu["effects"], device["effects"]);
+  }
+}
+
+TEST_F(CommandEffects, ExplainNamesWhatCalledForEach) {
+  const Outcome outcome = run("render scene.json -o out.png --size 16x16 --explain --effects=-lights");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("lights   off  turned off by --effects; called for by /lights/1, a point\n"),
+            std::string::npos)
+      << outcome.out;
+  EXPECT_NE(outcome.out.find("shadows  on   called for by /lights/0, which casts shadows\n"),
+            std::string::npos);
+  const Outcome plain = run("render one.obj -o out.png --size 16x16 --explain");
+  EXPECT_NE(plain.out.find("shadows  off  nothing calls for it\n"), std::string::npos) << plain.out;
+  const json explained = report_of("render scene.json -o out.png --explain")["explained"];
+  EXPECT_EQ(explained[1]["name"], "shadows");
+  EXPECT_EQ(explained[1]["on"], true);
+  EXPECT_EQ(explained[1]["called_by"], "/lights/0, which casts shadows");
+}
+
+TEST_F(CommandEffects, TheTableHasTheCostOfWhatIsOnAndZeroesForTheRest) {
+  const json rich = report_of("effects scene.json")["effects"];
+  ASSERT_EQ(rich.size(), 2u);
+  EXPECT_EQ(rich[0]["name"], "lights");
+  EXPECT_GT(rich[0]["rays"], 0) << "one of the points casts shadows";
+  const json& shadows = rich[1];
+  EXPECT_EQ(shadows["on"], true);
+  EXPECT_GT(shadows["rays"], rich[0]["rays"]);
+  EXPECT_GT(shadows["bytes"], 64 * 48 * 44);
+  const std::vector<std::string> kernels = shadows["kernels"];
+  for (const char* kernel : {"shadow_marks", "scan_tile_sums", "prefix_scan", "shadow_rays", "shade_lights"})
+    EXPECT_EQ(std::ranges::count(kernels, kernel), 1) << kernel;
+  EXPECT_EQ(shadows["dispatches"], 2 * 7 - 1 + 1);  // both lights' seven
+  const json plain = report_of("effects one.obj")["effects"];
+  for (const json& effect : plain) {
+    EXPECT_EQ(effect["on"], false);
+    EXPECT_EQ(effect["called_by"], nullptr);
+    EXPECT_EQ(effect["kernels"], json::array());
+    for (const char* zero : {"dispatches", "rays", "bytes", "ms"}) EXPECT_EQ(effect[zero], 0) << zero;
+  }
+  const Outcome text = run("effects scene.json --size 16x16");
+  EXPECT_NE(text.out.find("shadow_marks x 2, scan_tile_sums x 2, prefix_scan x 4, "), std::string::npos)
+      << text.out;
+}
+
+TEST_F(CommandEffects, AnimateAndLockstepTakeThem) {
+  const json frames = report_of("animate scene.json --frames 2");
+  EXPECT_NE(frames["frame_hashes"],
+            report_of("animate scene.json --frames 2 --effects=-shadows")["frame_hashes"]);
+  EXPECT_EQ(frames["rays"]["primary"], 2 * 64 * 48);
+  EXPECT_GT(frames["rays"]["shadow"], 64 * 48);
+  EXPECT_TRUE(report_of("lockstep scene.json")["equal"]);
+  EXPECT_TRUE(report_of("lockstep one.obj --effects +shadows")["equal"]);
+}
+
+TEST_F(CommandEffects, InstancesAreFlattenedOrRefusedByOneLine) {
+  const json flat = report_of("render instances:20 -o out.png --effects +shadows");
+  EXPECT_GT(flat["rays"]["shadow"], 0);
+  fs::remove("out.png");
+  expect_refused("animate instances:20 --frames 1 --size 16x16 --effects +shadows", 1,
+                 "instances that move, through which no shadow rays are traced (--effects=-shadows");
+}
+
+TEST_F(CommandEffects, WhatCannotBeIsRefusedByOneLine) {
+  expect_refused("render one.obj -o out.png --effects +fog", 2,
+                 "--effects: '+fog' is no + or - and an effect behind it: there are lights, shadows");
+  expect_refused("render one.obj -o out.png --effects shadows", 2, "--effects: 'shadows' is no + or -");
+  expect_refused("build one.obj --effects +shadows", 2, "--effects");
+  expect_refused("render scene.json -o out.png --builder none", 1,
+                 "--builder none: shadows are traced through a tree");
+  write("bad.json", R"({ "objects": [], "lights": [ { "radiance": [1, 1, 1] } ] })");
+  expect_refused("render bad.json -o out.png", 1,
+                 "bad.json: /lights/0: expected a \"direction\" or a \"position\"");
+}
+
+}  // namespace
+}  // namespace coppice

@@ -1,0 +1,265 @@
+// What a scene calls for, against the table in docs/effects.md, and what a frame then records.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "measure/effects_report.h"
+#include "render/frame.h"
+#include "scene/effect_set.h"
+#include "support/scene_file_text.h"
+
+namespace coppice {
+namespace {
+
+using nlohmann::json;
+
+Scene with_lights(const std::vector<json>& lights, const json& light = nullptr) {
+  json file = with_object();
+  file["lights"] = lights;
+  if (!light.is_null()) file["light"] = light;
+  return read_scene(file);
+}
+
+Scene with_light(const json& light = json::object()) {
+  json file = with_object();
+  file["light"] = light;
+  return read_scene(file);
+}
+
+const json sun = {{"direction", {0, 2, 0}}}, lamp = {{"position", {1, 2, 3}}};
+
+json shadowed(json light) {
+  light["shadows"] = true;
+  return light;
+}
+
+// "" where it is off.
+std::string caller(const Scene& scene, Effect effect) { return effects_of(scene).of(effect).called_by; }
+
+TEST(Effects, ThePlainSceneCallsForNothing) {
+  for (const Scene& scene :
+       {Scene{}, make_built_in("grove"), with_light(), with_lights({sun}), with_lights({}),
+        with_light({{"direction", {1, 1, 1}}, {"radiance", {1, 2, 3}}})}) {
+    EXPECT_EQ(caller(scene, Effect::lights), "");
+    EXPECT_EQ(caller(scene, Effect::shadows), "");
+    EXPECT_TRUE(shaded_lights(scene, effects_of(scene)).empty());
+  }
+}
+
+TEST(Effects, LightsCallForThemByTheirPlaceInTheFile) {
+  EXPECT_EQ(caller(with_lights({lamp}), Effect::lights), "/lights/0, a point");
+  EXPECT_EQ(caller(with_lights({sun, sun}), Effect::lights), "/lights/1, light number 2");
+  EXPECT_EQ(caller(with_lights({sun}, {{"radiance", {1, 1, 1}}}), Effect::lights),
+            "/lights/0, light number 2");
+  EXPECT_EQ(caller(with_lights({sun, shadowed(sun)}), Effect::shadows), "/lights/1, which casts shadows");
+  EXPECT_EQ(caller(with_light({{"shadows", true}}), Effect::shadows), "/light, which casts shadows");
+  EXPECT_EQ(caller(with_lights({shadowed(sun)}), Effect::lights), "");
+  json dark = shadowed(lamp);
+  dark["radiance"] = {0, 0, 0};
+  const Scene unlit = with_lights({sun, dark});  // a light that lights nothing calls for nothing
+  EXPECT_EQ(caller(unlit, Effect::lights) + caller(unlit, Effect::shadows), "");
+}
+
+TEST(Effects, WhatIsShadedHasThoseThatCastShadowsLast) {
+  const Scene scene = with_lights({shadowed(lamp), sun, lamp, shadowed(sun)});
+  const std::vector<Light> lights = shaded_lights(scene, effects_of(scene));
+  ASSERT_EQ(lights.size(), 4u);
+  EXPECT_EQ(lights[0].origin, "/lights/1");
+  EXPECT_EQ(lights[1].origin, "/lights/2");
+  EXPECT_EQ(lights[2].origin, "/lights/0");
+  EXPECT_EQ(lights[3].origin, "/lights/3");
+  EXPECT_EQ(lights[0].place, glm::vec3(0, 1, 0));
+  EXPECT_EQ(lights[2].place, glm::vec3(1, 2, 3));
+  const SceneArrays arrays = scene_arrays(scene);
+  EXPECT_EQ(arrays.light_counts, (LightCounts{4, 2, true}));
+  EXPECT_EQ(arrays.lighting.light_direction, vec3(0)) << "the plain light is one of the list";
+}
+
+TEST(Effects, ChangesOverrideWhatTheSceneCallsFor) {
+  const auto lights = [](const Scene& scene, const char* changes) {
+    std::vector<std::string> text;
+    for (const Light& light : shaded_lights(scene, effects_of(scene, EffectChanges(changes))))
+      text.push_back(light.origin + (light.shadows ? " shadows" : ""));
+    return text;
+  };
+  using Lines = std::vector<std::string>;
+  const Scene plain = with_light(), rich = with_lights({shadowed(sun), lamp});
+  EXPECT_EQ(lights(plain, "+shadows"), (Lines{"the directional light shadows"}));
+  EXPECT_EQ(lights(plain, "+lights"), (Lines{"the directional light"}));
+  EXPECT_EQ(lights(plain, "-shadows,-lights"), Lines{});
+  EXPECT_EQ(lights(rich, ""), (Lines{"/lights/1", "/lights/0 shadows"}));
+  EXPECT_EQ(lights(rich, "+shadows"), (Lines{"/lights/0 shadows", "/lights/1 shadows"}));
+  EXPECT_EQ(lights(rich, "-shadows"), (Lines{"/lights/0", "/lights/1"}));
+  EXPECT_EQ(lights(rich, "-lights"), (Lines{"/lights/0 shadows"}));
+  EXPECT_EQ(lights(rich, "-lights,-shadows"), Lines{});
+  EXPECT_EQ(lights(rich, "-shadows,+shadows"), (Lines{"/lights/0 shadows", "/lights/1 shadows"}));
+  const EffectSet off = effects_of(rich, EffectChanges("-shadows"));
+  EXPECT_FALSE(off.has(Effect::shadows));
+  EXPECT_EQ(off.of(Effect::shadows).called_by, "/lights/0, which casts shadows");
+  EXPECT_TRUE(off.of(Effect::shadows).overridden);
+}
+
+TEST(Effects, ChangesThatNobodyKnowsAreNamed) {
+  const auto error_of = [](const char* text) -> std::string {
+    try {
+      EffectChanges changes(text);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string all = " is no + or - and an effect behind it: there are lights, shadows";
+  EXPECT_EQ(error_of("+fog"), "'+fog'" + all);
+  EXPECT_EQ(error_of("shadows"), "'shadows'" + all);
+  EXPECT_EQ(error_of("+"), "'+'" + all);
+  EXPECT_EQ(error_of("+shadows,,+lights"), "''" + all);
+  EXPECT_EQ(error_of("+shadows,"), "nothing behind the last comma");
+  EXPECT_EQ(error_of(""), "");
+}
+
+// --- What is recorded.
+
+RecordedPicture recorded(const Scene& scene, const char* changes = "", std::uint32_t samples = 1,
+                         Walk walk = Walk::binary) {
+  FrameOptions options{.build = BuildOptions{}, .trace = {}};
+  options.trace.width = 40;
+  options.trace.height = 30;
+  options.trace.samples = samples;
+  options.trace.walk = walk;
+  return recorded_picture(scene_arrays(scene, effects_of(scene, EffectChanges(changes))), options);
+}
+
+std::string kernels_of(const RecordedPicture& picture) {
+  std::string text;
+  for (const RecordedPicture::Kernel& kernel : picture.kernels)
+    text += (text.empty() ? "" : " ") + kernel.name + "*" + std::to_string(kernel.dispatches);
+  return text;
+}
+
+bool has_slot(const RecordedPicture& picture, const std::string& name) {
+  return std::ranges::find(picture.slots, name) != picture.slots.end();
+}
+
+TEST(Effects, ThePlainSceneRecordsAsIfThereWereNone) {
+  const Scene rich = with_lights({shadowed(sun), lamp});
+  for (const RecordedPicture& picture :
+       {recorded(with_light()), recorded(with_lights({sun})), recorded(rich, "-lights,-shadows")}) {
+    EXPECT_EQ(kernels_of(picture), "camera_rays*1 trace_closest*1 shade_pixels*1");
+    for (const std::uint32_t steps : picture.effect_steps) EXPECT_EQ(steps, 0u);
+    for (const char* slot : {"lights", "shadow_marks", "shadow_places", "shadow_scan_status", "shadow_rays",
+                             "shadow_count", "shadow_hits", "shadow_counters"}) {
+      EXPECT_FALSE(has_slot(picture, slot)) << slot;
+    }
+  }
+}
+
+TEST(Effects, EachRecordsItsStagesAndNoOther) {
+  const RecordedPicture plain = recorded(with_light());
+  const RecordedPicture lights = recorded(with_lights({sun, lamp}));
+  EXPECT_EQ(kernels_of(lights), "camera_rays*1 trace_closest*1 shade*1 shade_lights*1 resolve*1");
+  EXPECT_EQ(lights.effect_steps[0], 1u);
+  EXPECT_EQ(lights.effect_steps[1], 0u);
+  EXPECT_TRUE(has_slot(lights, "lights"));
+  EXPECT_FALSE(has_slot(lights, "shadow_rays"));
+  const RecordedPicture shadows = recorded(with_lights({shadowed(sun)}));
+  EXPECT_EQ(kernels_of(shadows),
+            "camera_rays*1 trace_closest*1 shade*1 shadow_marks*1 scan_tile_sums*1 prefix_scan*2 "
+            "shadow_rays*1 trace_any*1 shade_lights*1 resolve*1");
+  EXPECT_EQ(shadows.effect_steps[0], 0u);
+  EXPECT_EQ(shadows.effect_steps[1], 7u);
+  const RecordedPicture both = recorded(with_lights({shadowed(sun), lamp, shadowed(lamp)}), "", 3);
+  EXPECT_EQ(both.effect_steps[0], 3u);  // the lamp without, once a sample
+  EXPECT_EQ(both.effect_steps[1], 2u * 3 * 7);
+  EXPECT_GT(lights.device_bytes, plain.device_bytes);
+  EXPECT_GT(shadows.device_bytes, lights.device_bytes);
+  const RecordedPicture wide = recorded(with_lights({shadowed(sun)}), "", 1, Walk::wide_packets);
+  EXPECT_NE(kernels_of(wide).find("trace_wide_any*1"), std::string::npos);
+}
+
+TEST(Effects, ViewsThatShowNoColoursHaveNone) {
+  FrameOptions options{.build = BuildOptions{}, .trace = {}};
+  options.trace.width = 40;
+  options.trace.height = 30;
+  options.trace.show = SHOW_NORMALS;
+  const RecordedPicture picture = recorded_picture(scene_arrays(with_lights({shadowed(sun), lamp})), options);
+  EXPECT_EQ(kernels_of(picture), "camera_rays*1 trace_closest*1 show*1 resolve*1");
+  EXPECT_FALSE(has_slot(picture, "lights"));
+}
+
+TEST(Effects, ShadowsNeedATreeOfOneLevel) {
+  Layout layout;
+  FrameOptions options{.build = BuildOptions{}, .trace = {}};
+  options.trace.walk = Walk::brute_force;
+  EXPECT_THROW(plan_frame(layout, scene_arrays(with_lights({shadowed(sun)})), options),
+               std::invalid_argument);
+  EXPECT_NO_THROW(plan_frame(layout, scene_arrays(with_lights({sun, lamp})), options));
+}
+
+// --- Scene files.
+
+TEST(SceneFileLights, AreReadAndTurnedWithTheFile) {
+  json file = with_object();
+  file["lights"] = {{{"position", {1, 2, 3}}, {"radiance", {4, 5, 6}}},
+                    {{"direction", {0, 0, 5}}, {"shadows", true}},
+                    {{"direction", {1, 0, 0}}}};
+  file["light"] = {{"ambient", {0.1, 0.2, 0.3}}};
+  const Scene scene = read_scene(file);
+  EXPECT_EQ(scene.ambient_light, glm::vec3(0.1f, 0.2f, 0.3f));
+  EXPECT_EQ(scene.light.direction, glm::vec3(0, 0, 1)) << "the first directional one is the scene's";
+  EXPECT_TRUE(scene.light.shadows);
+  EXPECT_EQ(scene.light_origin, "/lights/1");
+  ASSERT_EQ(scene.more_lights.size(), 2u);
+  EXPECT_TRUE(scene.more_lights[0].is_point);
+  EXPECT_EQ(scene.more_lights[0].place, glm::vec3(1, 2, 3));
+  EXPECT_EQ(scene.more_lights[0].radiance, glm::vec3(4, 5, 6));
+  EXPECT_FALSE(scene.more_lights[0].shadows);
+  file["up"] = "z";
+  const Scene up = read_scene(file);
+  EXPECT_EQ(up.light.direction, glm::vec3(0, 1, 0));
+  EXPECT_EQ(up.more_lights[0].place, glm::vec3(1, 3, -2));
+}
+
+TEST(SceneFileLights, FollowTheSceneIntoRange) {
+  json file = with_object({{"scale", 0x1p-40}});
+  file["lights"] = {{{"position", {0, 0x1p-40, 0}}}};
+  Scene scene = read_scene(file);
+  bring_into_range(scene);
+  const float scale = std::ldexp(1.0f, scene.scale_exponent);
+  EXPECT_GT(scene.scale_exponent, 0);
+  EXPECT_EQ(scene.more_lights[0].place, glm::vec3(0, 0x1p-40f * scale, 0));
+  EXPECT_EQ(scene.more_lights[0].distance, scale);
+}
+
+TEST(SceneFileLights, NoLightAtAllIsSaidAndTheDefaultTaken) {
+  const Scene dark = with_lights({}, {{"ambient", {0, 0, 0}}});
+  EXPECT_EQ(dark.light.radiance, Scene{}.light.radiance);
+  EXPECT_EQ(dark.ambient_light, Scene{}.ambient_light);
+  ASSERT_FALSE(dark.warnings.empty());
+  EXPECT_EQ(dark.warnings.back(), "s.json: no light at all, the default light is taken");
+  EXPECT_TRUE(with_lights({lamp}, {{"ambient", {0, 0, 0}}}).warnings.empty());
+}
+
+TEST(SceneFileLights, ErrorsNameTheirPlace) {
+  const auto error_of = [](const std::vector<json>& lights) {
+    json file = with_object();
+    file["lights"] = lights;
+    return scene_error_of(file);
+  };
+  EXPECT_EQ(error_of({sun, {{"radiance", {1, 1, 1}}}}),
+            "s.json: /lights/1: expected a \"direction\" or a \"position\", one of both");
+  EXPECT_EQ(error_of({{{"direction", {0, 1, 0}}, {"position", {0, 1, 0}}}}),
+            "s.json: /lights/0: expected a \"direction\" or a \"position\", one of both");
+  EXPECT_EQ(error_of({{{"direction", {0, 0, 0}}}}).substr(0, 40), "s.json: /lights/0/direction: [0,0,0], ex");
+  EXPECT_EQ(error_of({{{"position", {0, 0, 1e39}}}}).substr(0, 38), "s.json: /lights/0/position/2: 1e+39, e");
+  EXPECT_EQ(error_of({{{"position", {0, 0, 1}}, {"radiance", {-1, 0, 0}}}}).substr(0, 36),
+            "s.json: /lights/0/radiance/0: -1, ex");
+  EXPECT_EQ(error_of({{{"position", {0, 0, 1}}, {"shadows", "yes"}}}).substr(0, 34),
+            "s.json: /lights/0/shadows: \"yes\", ");
+  EXPECT_EQ(error_of({{{"position", {0, 0, 1}}, {"colour", 1}}}).substr(0, 39),
+            "s.json: /lights/0/colour: unknown key, ");
+  EXPECT_EQ(error_of(std::vector<json>(64, sun)).substr(0, 17), "s.json: /lights: ");
+  EXPECT_EQ(error_of(std::vector<json>(63, sun)), "");
+}
+
+}  // namespace
+}  // namespace coppice
