@@ -3,23 +3,24 @@
 # checks, the cheap ones first. The first that fails ends it, so what it said stands last; when all pass, that is ctest's
 # summary of the full run on the reference driver. Before that run a table says how long each part took.
 #   ./test.sh                    everything
-#   ./test.sh CTEST_ARGUMENT...  one ctest run on the reference driver, for example ./test.sh -R sort
+#   ./test.sh CTEST_ARGUMENT...  one ctest run on the reference driver, each test by itself, for example
+#                                ./test.sh -R Sort
 # COPPICE_DRIVER=auto|private|stock|system chooses the Vulkan driver, see host/setup.sh.
 # COPPICE_FUZZ_SECONDS: how long each reader is fuzzed, thousands of inputs unless given; COPPICE_FUZZ_SEED: another seed.
 set -euo pipefail
 source "$(dirname "$(realpath "${BASH_SOURCE[0]}")")/host/setup.sh"
 
-test_timeout=300 # seconds a test, where CMake sets no other
+test_timeout=600 # seconds a process of tests, where CMake sets no other
 # Long, and of a driver that is not the reference they would say little more than the rest: sizes, times, options. And
 # tests in which a sort by lookback sums up tiles that are late: old lavapipe ends loops by itself, so there the outcome
 # would hang on how late they are; by default its sort has no lookback. And what only GPUs run.
 reference_only='AMillion|EveryStageOfEveryTree|WideTree.PowersOfTwo|WideTree.SizesUpTo300|BenchChecksAndTimes'
 reference_only+='|TuneKeeps|TuneWithout|NamesMayHoldAnything|AFullDisk|IsNotWaitedFor|OptionsDoWhatTheySay'
-reference_only+='|OutputsThatCome|SeedsInARow|lookback_on_4_threads|AboutSixtyFourTilesOfASort|LikeAGpu'
+reference_only+='|OutputsThatCome|SeedsInARow|AboutSixtyFourTilesOfASort|LikeAGpu'
 # Of the trees that are traced, left are one without split triangles and one with, and the device's; in the other scene,
 # and beside brute force, one tree.
-reference_only+='|DeviceTraceOf.*/(bottom_up|gd16|gd16_early|hploc|lbvh|ploc_parallel|sah|sah_sweep|top_down)( |$)'
-reference_only+='|DeviceTraceOf(\.Scatter|Tree).*/(gpu_hploc|gpu_lbvh|ploc|sbvh)( |$)'
+reference_only+='|DeviceTraceOf.*/(bottom_up|gd16|gd16_early|hploc|lbvh|ploc_parallel|sah|sah_sweep|top_down)$'
+reference_only+='|DeviceTraceOf(\.Scatter|Tree).*/(gpu_hploc|gpu_lbvh|ploc|sbvh)$'
 
 # timed NAME COMMAND...: notes how long it took.
 parts=()
@@ -50,12 +51,26 @@ format_is_clean() {
   )
 }
 
-# run_ctest FOLDER ARGUMENT...
+# Of ctest's last run, whose processes hold many tests, those that failed, that began and said nothing of their end, or
+# that were skipped.
+name_tests_of_last_run() {
+  awk '
+    function name() { match($0, /\] [^ ,]+/); return substr($0, RSTART + 2, RLENGTH - 2) }
+    /\[ RUN      \] / { running = name() }
+    /\[       OK \] |\[  FAILED  \] |\[  SKIPPED \] / { if (name() == running) running = "" }
+    /\[  FAILED  \] [^ ]+\./ { print "failed: " name() }
+    /\[  SKIPPED \] [^ ]+\./ { print "skipped: " name() }
+    /^Test time =/ { if (running != "") print "did not end: " running; running = "" }
+  ' "$build_dir/Testing/Temporary/LastTest.log" | sort -u >&2
+}
+
+# run_ctest ARGUMENT...
 run_ctest() {
-  local folder=$1
-  shift
-  ctest --test-dir "$folder" --output-on-failure --no-tests=error --timeout "$test_timeout" \
-    --parallel "$(nproc)" "$@"
+  local status=0
+  ctest --test-dir "$build_dir" --output-on-failure --no-tests=error --timeout "$test_timeout" \
+    --parallel "$(nproc)" "$@" || status=$?
+  name_tests_of_last_run # on both lavapipes none if all is well, so that ctest's summary stands last
+  return "$status"
 }
 
 # In a subshell, so that one driver's environment does not reach the next.
@@ -66,7 +81,7 @@ run_ctest_on() (
     export COPPICE_TEST_WINDOW=1
   fi
   shift
-  run_ctest "$build_dir" "$@"
+  run_ctest "$@"
 )
 
 # The longest there, which say of many rays and scenes what shorter tests of the same code say of few.
@@ -78,7 +93,7 @@ host_tests_sanitized() {
   shards=$(nproc)
   for ((shard = 0; shard < shards; ++shard)); do
     UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1 GTEST_TOTAL_SHARDS=$shards GTEST_SHARD_INDEX=$shard \
-      timeout "$((2 * test_timeout))" "$build_dir/sanitize/host_tests" --gtest_brief=1 \
+      timeout "$test_timeout" "$build_dir/sanitize/host_tests" --gtest_brief=1 \
       --gtest_filter="-$not_sanitized" &
     pids+=($!)
   done
@@ -114,6 +129,9 @@ if (($#)); then
   exit
 fi
 
+# The tests of a suite in one process, which takes a fraction of the time (tests/suites.cmake).
+export COPPICE_TEST_SUITES=1
+
 check "format" format_is_clean
 timed "building everything" build ci "$build_dir"
 if command -v clang++ >/dev/null; then
@@ -127,10 +145,12 @@ else
   say "no clang: nothing is compiled by it, there are no sanitizers, and no reader is fuzzed"
 fi
 for driver in "${drivers[@]:1}"; do
-  check "device tests on $(describe_driver "$driver")" run_ctest_on "$driver" \
-    -L device -LE widths -E "$reference_only"
+  COPPICE_TEST_EXCEPT=$reference_only check "device tests on $(describe_driver "$driver")" \
+    run_ctest_on "$driver" -L device -LE reference_only
 done
 
 # The table of times comes before ctest's summary, which stands last: ctest says how long it takes by itself.
 say_times
+say "$("$build_dir/host_tests" --gtest_list_tests | grep -c '^ ') host tests and" \
+  "$("$build_dir/device_tests" --gtest_list_tests | grep -c '^ ') device tests, of which ctest counts the suites"
 check "all tests on $(describe_driver "$reference")" run_ctest_on "$reference"
