@@ -87,9 +87,18 @@ run_ctest_on() (
 # The longest there, which say of many rays and scenes what shorter tests of the same code say of few.
 not_sanitized='Watertight.*:HardRaysAre.*:*JudgeAccepts.*:*ClosestExactOn.*'
 
+# all_end_well PID...: waits for all of them.
+all_end_well() {
+  local pid failures=0
+  for pid; do
+    wait "$pid" || ((++failures))
+  done
+  ((failures == 0))
+}
+
 # In a process a core: with the sanitizers a process takes longer to start than most of the tests to run.
 host_tests_sanitized() {
-  local shards shard pids=() failures=0
+  local shards shard pids=()
   shards=$(nproc)
   for ((shard = 0; shard < shards; ++shard)); do
     UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1 GTEST_TOTAL_SHARDS=$shards GTEST_SHARD_INDEX=$shard \
@@ -97,10 +106,7 @@ host_tests_sanitized() {
       --gtest_filter="-$not_sanitized" &
     pids+=($!)
   done
-  for pid in "${pids[@]}"; do
-    wait "$pid" || ((++failures))
-  done
-  ((failures == 0))
+  all_end_well "${pids[@]}"
 }
 
 # fuzz_reader NAME CORPUS INPUTS: coverage-guided, from the corpus on. What it finds new stays in the build folder and is
@@ -116,7 +122,21 @@ fuzz_reader() {
     -artifact_prefix="$folder/" "$folder/found" "$corpus" \
     >"$folder/fuzz.log" 2>&1 </dev/null && return
   tail -n 60 "$folder/fuzz.log" >&2
+  say "failed: ${name}_fuzzer (log: $folder/fuzz.log)"
   return 1
+}
+
+fuzz_readers() {
+  local pids=()
+  fuzz_reader obj corpus 8000 &
+  pids+=($!)
+  fuzz_reader gltf corpus_gltf 4000 &
+  pids+=($!)
+  fuzz_reader scene_file corpus_scene_file 4000 &
+  pids+=($!)
+  fuzz_reader ply corpus_ply 4000 &
+  pids+=($!)
+  all_end_well "${pids[@]}"
 }
 
 install_missing "${build_packages[@]}" "${test_packages[@]}"
@@ -137,10 +157,7 @@ timed "building everything" build ci "$build_dir"
 if command -v clang++ >/dev/null; then
   timed "building everything by clang, host tests and fuzzers with sanitizers" build sanitize "$build_dir/sanitize"
   check "host tests under AddressSanitizer and UndefinedBehaviorSanitizer" host_tests_sanitized
-  check "the OBJ reader under libFuzzer" fuzz_reader obj corpus 8000
-  check "the glTF reader under libFuzzer" fuzz_reader gltf corpus_gltf 4000
-  check "the reader of scene files under libFuzzer" fuzz_reader scene_file corpus_scene_file 4000
-  check "the PLY reader under libFuzzer" fuzz_reader ply corpus_ply 4000
+  check "the readers of OBJ, glTF, scene and PLY files under libFuzzer" fuzz_readers
 else
   say "no clang: nothing is compiled by it, there are no sanitizers, and no reader is fuzzed"
 fi
