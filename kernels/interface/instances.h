@@ -106,7 +106,7 @@ struct PlaceHitsArgs {
   HitBuffer hits;                    // ray_count; misses stay as they are
   TriangleBuffer triangles;          // out: ray_count
   UintBuffer material_index;         // out: ray_count
-  UintBuffer primitives;             // out: ray_count, the triangle in its mesh; of a miss 0; null: not wanted
+  UintBuffer primitives;  // out: ray_count, the triangle in its mesh; of a miss 0; null: not wanted
   uint ray_count;
   uint padding;
 };

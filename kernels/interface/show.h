@@ -6,13 +6,13 @@ INTERFACE_BEGIN
 
 const uint SHOW_GROUP = 64;
 
-const uint SHOW_COLOR = 0;    // what shade makes; none of the others
-const uint SHOW_STEPS = 1;    // nodes that the ray visited, through the map; rays without a hit, too
-const uint SHOW_NORMALS = 2;  // of triangles, as their corners go round: 0.5 + 0.5 n, squared
-const uint SHOW_DEPTH = 3;    // along the line of sight, through the map
-const uint SHOW_IDS = 4;      // of primitives, a colour each
-const uint SHOW_RANKS = 5;    // the word of the primitive, through the map
-const uint SHOW_GROUPS = 6;   // the word of the primitive, a colour each
+const uint SHOW_COLOR = 0;      // what shade makes; none of the others
+const uint SHOW_STEPS = 1;      // nodes that the ray visited, through the map; rays without a hit, too
+const uint SHOW_NORMALS = 2;    // of triangles, as their corners go round: 0.5 + 0.5 n, squared
+const uint SHOW_DEPTH = 3;      // along the line of sight, through the map
+const uint SHOW_IDS = 4;        // of primitives, a colour each
+const uint SHOW_RANKS = 5;      // the word of the primitive, through the map
+const uint SHOW_GROUPS = 6;     // the word of the primitive, a colour each
 const uint SHOW_INSTANCES = 7;  // a colour each; one for all where there are none
 // Of two levels the primitives of SHOW_RANKS and SHOW_GROUPS are instances, and SHOW_IDS tells triangles of
 // other instances apart.
