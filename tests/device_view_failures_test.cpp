@@ -68,8 +68,9 @@ TEST_F(FailingDevice, OneThatHangsEndsTheWindow) {
   EXPECT_TRUE(says("did not finish within") || says("did not draw the window within")) << window_->err();
 }
 
+// Through a binary tree rays lie in memory.
 TEST_F(FailingDevice, APictureTooLargeForItsMemoryKeepsTheSizeThatItHad) {
-  OPEN_WITH_LAYER("terrain:500 --size 200x150 --pictures picture --rebuild",
+  OPEN_WITH_LAYER("terrain:500 --size 200x150 --pictures picture --rebuild --tree binary",
                   "COPPICE_LARGEST_ALLOCATION=16777216");
   const std::string id = id_of_window();
   desktop_->xdotool("windowsize " + id + " 1200 1000");

@@ -84,9 +84,8 @@ TEST_F(ViewWindow, AnotherSceneIsTypedAndABadOneIsNamed) {
   EXPECT_EQ(std::ranges::count(without_notes(window_->err()), '\n'), 1) << window_->err();
 }
 
-// Nothing is drawn meanwhile, so an end after so many frames does not come; without a window manager nobody
-// else minimises it.
-TEST_F(ViewWindow, DrawsNothingWhileItIsMinimised) {
+// What is asked for meanwhile is there once it is seen again.
+TEST_F(ViewWindow, IsMinimisedAndShownAgain) {
   OPEN_OR_SKIP("moving:500 --size 200x150 --pictures picture");
   const std::string id = id_of_window();
   desktop_->set_minimised(id, true);

@@ -84,8 +84,9 @@ TEST(Effects, ChangesOverrideWhatTheSceneCallsFor) {
   };
   using Lines = std::vector<std::string>;
   const Scene plain = with_light(), rich = with_lights({shadowed(sun), lamp});
-  EXPECT_EQ(lights(plain, "+shadows"), (Lines{"the directional light shadows"}));
-  EXPECT_EQ(lights(plain, "+lights"), (Lines{"the directional light"}));
+  EXPECT_EQ(lights(plain, "+shadows"), (Lines{"/light shadows"}));
+  EXPECT_EQ(lights(plain, "+lights"), (Lines{"/light"}));
+  EXPECT_EQ(lights(Scene{}, "+lights"), (Lines{"the directional light"}));
   EXPECT_EQ(lights(plain, "-shadows,-lights"), Lines{});
   EXPECT_EQ(lights(rich, ""), (Lines{"/lights/1", "/lights/0 shadows"}));
   EXPECT_EQ(lights(rich, "+shadows"), (Lines{"/lights/0 shadows", "/lights/1 shadows"}));
