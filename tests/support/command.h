@@ -55,7 +55,7 @@ class Command : public testing::Test {
     const std::string command =
         before + "timeout 120 " + COPPICE_PROGRAM + " " + arguments + " >stdout.txt 2>stderr.txt";
     const int status = std::system(command.c_str());
-    return {WEXITSTATUS(status), read("stdout.txt"), read("stderr.txt")};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read("stdout.txt"), read("stderr.txt")};
   }
 
   // Of stderr, without what is said of the driver and the machine, which is not the same everywhere.
