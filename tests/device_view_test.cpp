@@ -65,9 +65,10 @@ TEST_F(ViewWindow, AnotherSceneIsTypedAndABadOneIsNamed) {
   write("bad.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n");
   OPEN_OR_SKIP("terrain:500 --size 640x480 --pictures picture");
   const auto type = [&](const std::string& name, const std::function<bool()>& is_there) {
-    // Letters are lost that come before the field has seen the click, so it is tried again.
+    // Letters that come before the field has seen the click are keys of the window, so it gets some frames'
+    // time for it; and where it has not seen it then, it is tried again.
     EXPECT_TRUE(wait_until([&] {
-      desktop_->xdotool("mousemove 100 30 click 1");
+      desktop_->xdotool("mousemove 100 30 click 1 sleep 0.5");
       desktop_->xdotool("type --delay 1 " + name);
       desktop_->xdotool("key Return");
       return wait_until(is_there, std::chrono::seconds(2));
