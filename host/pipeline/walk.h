@@ -29,6 +29,8 @@ struct WalkChoice {
   std::string said = "the wide tree";  // what messages call the choice
 
   bool automatic() const { return !walk && !any_wide; }
+  // The binary walk is the only one that knows two levels.
+  bool allows_binary() const { return !any_wide && walk.value_or(Walk::binary) == Walk::binary; }
 };
 
 }  // namespace coppice

@@ -12,6 +12,10 @@ float largest_of(float a, float b, float c) {
 
 }  // namespace
 
+vec3 hit_point(const Triangle& t, const Hit& hit) {
+  return t.a * (1.0f - hit.u - hit.v) + t.b * hit.u + t.c * hit.v;
+}
+
 vec3 leave_surface(const Triangle& t, const Hit& hit, const vec3& normal) {
   const vec3 edge_b = t.b - t.a, edge_c = t.c - t.a;
   const float size =
@@ -20,8 +24,7 @@ vec3 leave_surface(const Triangle& t, const Hit& hit, const vec3& normal) {
   for (int axis = 0; axis < 3; ++axis) {
     distance += std::fabs(normal[axis]) * ((largest_of(t.a[axis], t.b[axis], t.c[axis]) + size) * 0x1p-20f);
   }
-  const vec3 point = t.a * (1.0f - hit.u - hit.v) + t.b * hit.u + t.c * hit.v;
-  return point + normal * distance;
+  return hit_point(t, hit) + normal * distance;
 }
 
 }  // namespace coppice::twins

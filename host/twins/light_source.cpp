@@ -28,10 +28,6 @@ vec3 any_normal(const Triangle& t) {
 
 }  // namespace
 
-vec3 hit_point(const Triangle& t, const Hit& hit) {
-  return t.a * (1.0f - hit.u - hit.v) + t.b * hit.u + t.c * hit.v;
-}
-
 vec3 light_direction(const LightSource& light, const vec3& point) {
   return light.kind == LIGHT_POINT ? light.place - point : light.place;
 }

@@ -4,9 +4,6 @@
 
 namespace coppice::twins {
 
-// The point of a hit on its triangle.
-vec3 hit_point(const Triangle& triangle, const Hit& hit);
-
 // From a point towards a light; not of unit length.
 vec3 light_direction(const LightSource& light, const vec3& point);
 

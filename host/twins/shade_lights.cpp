@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "twins/leave_surface.h"
 #include "twins/light_source.h"
 #include "twins/vectors.h"
 

@@ -1,3 +1,4 @@
+#include "twins/leave_surface.h"
 #include "twins/light_source.h"
 
 namespace coppice::twins {

@@ -65,7 +65,7 @@ EffectSet effects_for_view(const SceneOptions& options, const BuilderChoice& bui
 }  // namespace
 
 bool keeps_instances(const BuilderChoice& builder, const WalkChoice& walk) {
-  return builder.on_device() && !walk.any_wide && walk.walk.value_or(Walk::binary) == Walk::binary;
+  return builder.on_device() && walk.allows_binary();
 }
 
 OpenedScene open_for_view(const SceneOptions& options, const BuilderChoice& builder) {

@@ -1,10 +1,5 @@
 // A point of a surface and a light.
-
-vec3 hit_point(Triangle triangle, float u, float v) {
-  precise float w = 1.0 - u - v;
-  precise vec3 point = triangle.a * w + triangle.b * u + triangle.c * v;
-  return point;
-}
+#include "hit_point.glsl"
 
 // Not of unit length.
 vec3 towards(LightSource light, vec3 point) {

@@ -2,13 +2,13 @@
 // and Binder 2019, "A Fast and Robust Method for Avoiding Self-Intersection". The point is moved off the triangle's
 // plane by a bound of its own error and of that of the tests that will look for it again, so no ray meets the triangle
 // it starts from, and the distance scales with the scene. The bound is derived in docs/numerics.md.
+#include "hit_point.glsl"
 
 const float ORIGIN_ROOM = 9.5367431640625e-7;  // 2^-20
 
 // `normal` is of unit length and points to the side on which the ray leaves.
 vec3 offset_origin(Triangle triangle, float u, float v, vec3 normal) {
-  precise float w = 1.0 - u - v;
-  precise vec3 point = triangle.a * w + triangle.b * u + triangle.c * v;
+  vec3 point = hit_point(triangle, u, v);
   precise vec3 edge_b = triangle.b - triangle.a;
   precise vec3 edge_c = triangle.c - triangle.a;
   vec3 extent = max(abs(edge_b), abs(edge_c));
