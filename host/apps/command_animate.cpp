@@ -179,11 +179,8 @@ class AnimateCommand : public Command {
     if (last_ < first_) fail();
   }
 
-  // Otherwise they are flattened: only the binary walk knows two levels.
-  bool traces_instances() const {
-    const WalkChoice& walk = device_.choices.walk;
-    return !walk.any_wide && walk.walk.value_or(Walk::binary) == Walk::binary;
-  }
+  // Otherwise they are flattened.
+  bool traces_instances() const { return device_.choices.walk.allows_binary(); }
 
   std::string why_still(const Scene& scene) const {
     return "nothing moves in scene '" + scene.name + "': all frames are the same" +

@@ -124,11 +124,10 @@ class RenderCommand : public Command {
           "(--effects=-shadows goes without)");
   }
 
-  // Otherwise instances are flattened: only the binary walk of trees of the device knows two levels.
+  // Otherwise instances are flattened: only trees of the device have two levels.
   bool traces_instances() const {
-    const WalkChoice& walk = device_.choices.walk;
-    return traces_on_device() && builder_.on_device() && !walk.any_wide &&
-           walk.walk.value_or(Walk::binary) == Walk::binary && can_trace_wide(picture_.trace);
+    return traces_on_device() && builder_.on_device() && device_.choices.walk.allows_binary() &&
+           can_trace_wide(picture_.trace);
   }
 
   DeviceUse use_for(const Scene& scene) const {
