@@ -31,28 +31,15 @@ constexpr const char* wrong_tree = "computes a wrong tree";
 constexpr const char* wrong_refit = "refits a tree wrong";
 constexpr const char* wrong_hits = "finds wrong hits";
 
-class Random {
- public:
-  std::uint32_t next_word() { return state_ = state_ * 1664525u + 1013904223u; }
-  float next() { return static_cast<float>(next_word() >> 8) / 16777216.0f; }
-  vec3 next_vec3() {
-    const float x = next(), y = next();
-    return {x, y, next()};
-  }
-
- private:
-  std::uint32_t state_ = 1;
-};
-
 std::vector<uint> random_words(std::size_t count) {
-  Random random;
+  CheckRandom random;
   std::vector<uint> words(count);
   for (uint& word : words) word = random.next_word() ^ random.next_word() >> 16;
   return words;
 }
 
 std::vector<Triangle> scattered_triangles() {
-  Random random;
+  CheckRandom random;
   std::vector<Triangle> triangles(check_triangles);
   for (Triangle& t : triangles) {
     t.a = random.next_vec3();
@@ -81,7 +68,7 @@ std::vector<Node> chain_of_boxes() {
 
 std::vector<Ray> check_rays() {
   constexpr float far = std::numeric_limits<float>::infinity();
-  Random random;
+  CheckRandom random;
   std::vector<Ray> rays;
   for (std::uint32_t y = 0; y < picture_edge; ++y) {
     for (std::uint32_t x = 0; x < picture_edge; ++x) {

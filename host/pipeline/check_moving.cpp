@@ -18,35 +18,14 @@ constexpr std::uint32_t deform_kinds = 5;
 constexpr const char* wrong_vertices = "moves vertices wrong";
 constexpr const char* wrong_instances = "moves or places instances wrong";
 
-// From -1 to 1.
-class Draws {
- public:
-  float next() {
-    state_ = state_ * 1664525u + 1013904223u;
-    return static_cast<float>(state_ >> 8) * 0x1p-23f - 1;
-  }
-  vec3 next_vec3() {
-    const float x = next(), y = next();
-    return {x, y, next()};
-  }
-  std::vector<float> floats(std::size_t count) {
-    std::vector<float> values(count);
-    for (float& value : values) value = next();
-    return values;
-  }
-
- private:
-  std::uint32_t state_ = 7;
-};
-
 class VertexCheck {
  public:
   explicit VertexCheck(CheckChain& chain) : chain_(chain) {}
 
   void add() {
     constexpr std::uint32_t coordinates = 3 * check_vertices;
-    const Slot<float> frames = chain_.add("frames", draws_.floats(2 * coordinates));
-    const Slot<float> offsets = chain_.add("offsets", draws_.floats(coordinates));
+    const Slot<float> frames = chain_.add("frames", random_floats(2 * coordinates));
+    const Slot<float> offsets = chain_.add("offsets", random_floats(coordinates));
     const auto step = chain_.add("sequence_step", std::vector<SequenceStep>{{0, 1, 0.3f, 0}});
     const auto weight = chain_.add("weight", std::vector<float>{0.7f});
     const Slot<float> between = out("between"), morphed = out("morphed");
@@ -63,6 +42,12 @@ class VertexCheck {
   }
 
  private:
+  std::vector<float> random_floats(std::size_t count) {
+    std::vector<float> values(count);
+    for (float& value : values) value = random_.next_signed();
+    return values;
+  }
+
   Slot<float> out(const char* name) {
     const Slot<float> slot = chain_.layout().add<float>(name, 3 * check_vertices);
     chain_.compare(slot, wrong_vertices);
@@ -84,11 +69,11 @@ class VertexCheck {
   void add_pose(const Slot<float>& from) {
     std::vector<Joint> joints(4);
     for (Joint& joint : joints) {
-      for (vec4& row : joint.rows) row = {draws_.next_vec3(), draws_.next()};
+      for (vec4& row : joint.rows) row = {random_.next_signed_vec3(), random_.next_signed()};
     }
     std::vector<VertexJoints> by(check_vertices);
     for (uint v = 0; v < check_vertices; ++v)
-      by[v] = {{v % 4 | 1u << 16, 2u | 3u << 16}, {draws_.next_vec3(), v % 3 == 0 ? 0.0f : 0.5f}, {}};
+      by[v] = {{v % 4 | 1u << 16, 2u | 3u << 16}, {random_.next_signed_vec3(), v % 3 == 0 ? 0.0f : 0.5f}, {}};
     const auto joint_slot = chain_.add("joints", joints);
     const auto by_slot = chain_.add("vertex_joints", by);
     const Slot<float> posed = out("posed");
@@ -100,7 +85,7 @@ class VertexCheck {
   }
 
   CheckChain& chain_;
-  Draws draws_;
+  CheckRandom random_;
 };
 
 class InstanceCheck {
@@ -122,9 +107,9 @@ class InstanceCheck {
     for (std::uint32_t mesh = 0; mesh < std::size(mesh_triangles); ++mesh) {
       std::vector<Triangle> triangles(mesh_triangles[mesh]);
       for (Triangle& t : triangles) {
-        t.a = draws_.next_vec3();
-        t.b = t.a + draws_.next_vec3() * 0.3f;
-        t.c = t.a + draws_.next_vec3() * 0.3f;
+        t.a = random_.next_signed_vec3();
+        t.b = t.a + random_.next_signed_vec3() * 0.3f;
+        t.c = t.a + random_.next_signed_vec3() * 0.3f;
       }
       chain_.upload(triangles_of(plan_, mesh), std::span<const Triangle>(triangles));
     }
@@ -138,8 +123,8 @@ class InstanceCheck {
   void add_places() {
     std::vector<InstanceTransform> rest(check_instances);
     for (InstanceTransform& t : rest)
-      t = {draws_.next_vec3(), 8 * draws_.next(),  draws_.next_vec3(),
-           4 * draws_.next(),  draws_.next_vec3(), 8 * draws_.next()};
+      t = {random_.next_signed_vec3(), 8 * random_.next_signed(),  random_.next_signed_vec3(),
+           4 * random_.next_signed(),  random_.next_signed_vec3(), 8 * random_.next_signed()};
     const SwarmSlots swarm{chain_.add("rest", rest), chain_.add("turn", std::vector<uint>{0x12345678u})};
     plan_top_refit(chain_.layout(), plan_, max_turns_);  // for the triangles that have the boxes
     chain_.append([=, plan = plan_](Chain& chain) {
@@ -159,8 +144,8 @@ class InstanceCheck {
     constexpr float far = std::numeric_limits<float>::infinity();
     std::vector<Ray> rays(instance_rays);
     for (Ray& ray : rays) {
-      ray.origin = 10.0f * draws_.next_vec3();
-      ray.direction = 6.0f * draws_.next_vec3() - ray.origin;
+      ray.origin = 10.0f * random_.next_signed_vec3();
+      ray.direction = 6.0f * random_.next_signed_vec3() - ray.origin;
       ray.t_min = 0;
       ray.t_max = far;
     }
@@ -205,7 +190,7 @@ class InstanceCheck {
   }
 
   CheckChain& chain_;
-  Draws draws_;
+  CheckRandom random_;
   InstancePlan plan_;
   std::uint32_t max_turns_;
 };
