@@ -94,9 +94,9 @@ void split_kernels(CheckedDevice& device, MovingFrames& frames, const AnimateRun
 
 }  // namespace
 
-MovingOptions moving_options(const CheckedDevice& device, const Scene& scene, const AnimateRuns& runs) {
-  const std::uint32_t bits = runs.builder.bits_for(scene_arrays(scene).triangles);
-  return {.build = device.build_options(runs.builder.build_options(bits)),
+MovingOptions moving_options(const CheckedDevice& device, const AnimateRuns& runs,
+                             std::uint32_t morton_bits) {
+  return {.build = device.build_options(runs.builder.build_options(morton_bits)),
           .trace = runs.trace,
           .effects = runs.effects,
           .update = runs.update,
@@ -121,7 +121,7 @@ AnimateReport animate(CheckedDevice& device, const Scene& scene, const AnimateRu
   report.frames_per_second = runs.frames_per_second;
   report.update = runs.update;
   report.tree_cost = runs.tree_cost;
-  MovingFrames frames(device.device(), scene, moving_options(device, scene, runs));
+  MovingFrames frames(device.device(), scene, moving_options(device, runs, report.morton_bits));
   report.device_bytes = device_bytes(frames.layout());
   const Films films(scene, runs);
   const InterruptionGuard guard;

@@ -71,8 +71,8 @@ struct AnimateReport {
 // first frame, which then comes again. Throws Interrupted on SIGINT or SIGTERM between two frames.
 AnimateReport animate(CheckedDevice& device, const Scene& scene, const AnimateRuns& runs);
 
-// What a frame of these runs is made with.
-MovingOptions moving_options(const CheckedDevice& device, const Scene& scene, const AnimateRuns& runs);
+// What a frame of these runs is made with. `morton_bits`: as BuilderChoice::bits_for has them, of the scene.
+MovingOptions moving_options(const CheckedDevice& device, const AnimateRuns& runs, std::uint32_t morton_bits);
 
 // As --update has it.
 const char* word_of_update(Update update);

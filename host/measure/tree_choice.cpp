@@ -1,6 +1,7 @@
 #include "measure/tree_choice.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "measure/films.h"
 #include "pipeline/interruption.h"
@@ -9,22 +10,17 @@ namespace coppice {
 
 namespace {
 
-double least_ms(CheckedDevice& device, const Scene& scene, AnimateRuns runs) {
-  runs.last = runs.first;
-  runs.update = Update::rebuild;
-  runs.tree_cost = runs.split = false;
-  runs.picture = nullptr;
-  runs.skip = nullptr;
+// Of runs of the frame, but for the first one, which compiles the kernels.
+double least_ms(CheckedDevice& device, const Scene& scene, const MovingOptions& options, double seconds,
+                const Film& film) {
   constexpr int tries = 3;
-  double least = 0;
-  const double seconds = runs.first / runs.frames_per_second;
-  const Film film = Films(scene, runs).at(seconds);
-  MovingFrames frames(device.device(), scene, moving_options(device, scene, runs));
-  for (int run = 0; run <= tries; ++run) {  // the first compiles the kernels
+  double least = std::numeric_limits<double>::infinity();
+  MovingFrames frames(device.device(), scene, options);
+  for (int run = 0; run <= tries; ++run) {
     throw_if_interrupted();
     frames.submit(seconds, film);
-    const MovingFrame frame = frames.take();
-    if (run == 1 || (run > 1 && frame.total_ms < least)) least = frame.total_ms;
+    const double ms = frames.take().total_ms;
+    if (run > 0) least = std::min(least, ms);
   }
   return least;
 }
@@ -36,10 +32,16 @@ std::vector<TriedTree> choose_tree(CheckedDevice& device, const Scene& scene, An
   std::vector<TriedTree> tried;
   if (builders.size() < 2 && walks.size() < 2) return tried;
   const InterruptionGuard guard;
+  const double seconds = runs.first / runs.frames_per_second;
+  const Film film = Films(scene, runs).at(seconds);
+  const std::uint32_t morton_bits = runs.builder.bits_for(scene_arrays(scene).triangles);
   const auto time = [&](const std::string& builder, Walk walk) {
     runs.builder.name = builder;
     runs.trace.walk = walk;
-    tried.push_back({builder, walk, least_ms(device, scene, runs)});
+    MovingOptions options = moving_options(device, runs, morton_bits);
+    options.update = Update::rebuild;
+    options.tree_cost = false;
+    tried.push_back({builder, walk, least_ms(device, scene, options, seconds, film)});
   };
   const auto best = [&] { return *std::ranges::min_element(tried, {}, &TriedTree::ms); };
   for (const Walk walk : walks) time(builders.front(), walk);
