@@ -141,15 +141,8 @@ TEST_F(MovingSwarm, HasNoWideTree) {
   EXPECT_THROW(MovingFrames(test_device(), scene, options), std::invalid_argument);
 }
 
-// LikeAGpu is in the names of what runs on the reference driver only.
 TEST_F(MovingSwarm, LikeAGpuGoThroughMappedMemory) {
-  Device like_a_gpu({"", true, true});
-  const Scene scene = make_instances(50);
-  const MovingOptions options = moving_options();
-  MovingFrames frames(like_a_gpu, scene, options), here(test_device(), scene, options);
-  const Film film = film_of(scene, options);
-  EXPECT_EQ(frame_at(frames, 1.5, film), frame_at(here, 1.5, film));
-  EXPECT_EQ(like_a_gpu.take_validation_messages(), std::vector<std::string>());
+  expect_same_like_a_gpu(make_instances(50), moving_options(), 1.5);
 }
 
 }  // namespace

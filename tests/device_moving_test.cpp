@@ -290,15 +290,8 @@ TEST_F(MovingFramesTest, MayLoseAllTriangles) {
   EXPECT_EQ(frame_at(frames, 0, film), whole);
 }
 
-// LikeAGpu is in the names of what runs on the reference driver only.
 TEST_F(MovingFramesTest, LikeAGpuGoThroughMappedMemory) {
-  Device like_a_gpu({"", true, true});
-  const Scene scene = make_moving(500);
-  const MovingOptions options = moving_options(Walk::wide_packets);
-  MovingFrames frames(like_a_gpu, scene, options), here(test_device(), scene, options);
-  const Film film = film_of(scene, options);
-  EXPECT_EQ(frame_at(frames, 0.7, film), frame_at(here, 0.7, film));
-  EXPECT_EQ(like_a_gpu.take_validation_messages(), std::vector<std::string>());
+  expect_same_like_a_gpu(make_moving(500), moving_options(Walk::wide_packets), 0.7);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "render/film.h"
@@ -25,6 +26,16 @@ inline std::vector<uint> frame_at(MovingFrames& frames, double seconds, const Fi
   frames.submit(seconds, film);
   const MovingFrame frame = frames.take();
   return {frame.image.begin(), frame.image.end()};
+}
+
+// A frame whose words go through mapped memory has the same picture. In tests with LikeAGpu in their names,
+// which run on the reference driver only.
+inline void expect_same_like_a_gpu(const Scene& scene, const MovingOptions& options, double seconds) {
+  Device like_a_gpu({"", true, true});
+  MovingFrames frames(like_a_gpu, scene, options), here(test_device(), scene, options);
+  const Film film = film_of(scene, options);
+  EXPECT_EQ(frame_at(frames, seconds, film), frame_at(here, seconds, film));
+  EXPECT_EQ(like_a_gpu.take_validation_messages(), std::vector<std::string>());
 }
 
 // A scene with instances as the last frame had it: where the device has moved instances and vertices.
