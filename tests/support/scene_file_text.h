@@ -1,5 +1,8 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -68,6 +71,19 @@ inline nlohmann::json with_object(const nlohmann::json& more = nlohmann::json::o
       {"objects", {{{"mesh", "t"}}}}};
   file["objects"][0].update(more);
   return file;
+}
+
+inline void expect_corner(const Scene& scene, std::size_t corner, glm::vec3 expected) {
+  ASSERT_LT(corner, scene.positions.size());
+  EXPECT_LT(glm::distance(scene.positions[corner], expected), 1e-5f)
+      << scene.positions[corner].x << ' ' << scene.positions[corner].y << ' ' << scene.positions[corner].z;
+}
+
+inline void expect_corner_at(const Scene& scene, double seconds, std::size_t corner, glm::vec3 expected) {
+  ASSERT_TRUE(scene.motion);
+  Scene moved = scene;
+  moved.positions = positions_at(*scene.motion, seconds);
+  expect_corner(moved, corner, expected);
 }
 
 }  // namespace coppice

@@ -1,0 +1,136 @@
+// The bytes that traces and pictures move by their models, against numbers worked out by hand.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <map>
+
+#include "measure/traffic.h"
+#include "pipeline/build_plan.h"
+#include "pipeline/trace_any.h"
+#include "pipeline/trace_pieces.h"
+#include "pipeline/wide_plan.h"
+#include "stages/stages.h"
+
+namespace coppice {
+namespace {
+
+constexpr std::array<std::uint64_t, 4> nowhere{};
+// Of 2,000 rays 500 hit something; each step of a ray is kept.
+TEST(Traffic, OfWhatIsShown) {
+  const auto bytes_of_view = [](uint view, const char* stage) {
+    Layout layout;
+    const TreeSlots tree = plan_tree(layout, 100, 199);
+    TraceOptions options{.width = 40, .height = 50, .show = view};
+    const TracePlan plan = plan_trace(layout, tree, 1, options);
+    Chain chain(nowhere);
+    append_trace(chain, tree, plan);
+    TraceCounters counters{};
+    counters.rays.x = 2000;
+    counters.hits.x = 500;
+    counters.steps.x = 30000;
+    for (const Step& step : chain.steps()) {
+      if (stage_of(step) && std::string_view(stage_of(step)->name) == stage)
+        return modelled_bytes(step, counts_of_trace(counters));
+    }
+    return std::uint64_t{0};
+  };
+  EXPECT_EQ(bytes_of_view(SHOW_IDS, "show"), 2000u * (4 + 12));
+  EXPECT_EQ(bytes_of_view(SHOW_STEPS, "show"), 2000u * (4 + 12));
+  EXPECT_EQ(bytes_of_view(SHOW_DEPTH, "show"), 2000u * (4 + 12) + 500 * 4);
+  EXPECT_EQ(bytes_of_view(SHOW_NORMALS, "show"), 2000u * (4 + 12) + 500 * 36);
+  EXPECT_EQ(bytes_of_view(SHOW_IDS, "shade"), 0u);
+  EXPECT_EQ(bytes_of_view(SHOW_IDS, "trace_closest"), 2000u * 64 + 64 * 30000 + 500 * 36);
+  EXPECT_EQ(bytes_of_view(SHOW_STEPS, "trace_closest"), 2000u * 68 + 64 * 30000 + 500 * 36);
+}
+
+TEST(Traffic, OfAPictureOfOneSample) {
+  Layout layout;
+  const TreeSlots tree = plan_tree(layout, 100, 199);
+  const TracePlan plan = plan_trace(layout, tree, 1, {.width = 40, .height = 25});
+  Chain chain(nowhere);
+  append_trace(chain, tree, plan);
+  TraceCounters counters{};
+  counters.rays.x = 1000;
+  counters.hits.x = 250;
+  std::map<std::string, std::uint64_t> bytes;
+  for (const Step& step : chain.steps()) {
+    if (stage_of(step)) bytes[stage_of(step)->name] += modelled_bytes(step, counts_of_trace(counters));
+  }
+  EXPECT_EQ(bytes["shade_pixels"], 1000u * 8 + 250 * 64);
+  EXPECT_FALSE(bytes.contains("shade") || bytes.contains("resolve"));
+}
+
+// 1,000 rays, of which 250 hit something; of the 200 shadow rays of two lights 40 are blocked.
+TEST(Traffic, OfLightsAndShadows) {
+  Layout layout;
+  const TreeSlots tree = plan_tree(layout, 100, 199);
+  const TracePlan plan =
+      plan_trace(layout, tree, 1, {.width = 40, .height = 25, .lights = {.lights = 3, .shadows = 2}});
+  Chain chain(nowhere);
+  append_trace(chain, tree, plan);
+  RunCounts counts;
+  counts.rays = 1000, counts.hits = 250, counts.steps = 4000;
+  counts.shadow = {2000, 200, 40, 3000};
+  std::map<std::string, std::uint64_t> bytes;
+  for (const Step& step : chain.steps()) {
+    if (stage_of(step)) bytes[stage_of(step)->name] += modelled_bytes(step, counts);
+  }
+  EXPECT_EQ(bytes["shadow_marks"], 2u * (1000 * 20 + 250 * 76));
+  EXPECT_EQ(bytes["shadow_rays"], 2u * 1000 * 8 + 200 * 96);
+  EXPECT_EQ(bytes["trace_any"], 200u * 36 + 3000 * 64 + 40 * 36);
+  const std::uint64_t plain = 1000 * 4 + 250 * 112;
+  EXPECT_EQ(bytes["shade_lights"], plain + 2 * (1000 * 4 + 250 * 4) + 200 * 8 + 160 * 112);
+}
+
+TEST(Traffic, OfATraceOfTwoSamples) {
+  Layout layout;
+  const TreeSlots tree = plan_tree(layout, 100, 199);
+  TraceOptions options;
+  options.width = 40;
+  options.height = 25;
+  options.samples = 2;
+  const TracePlan plan = plan_trace(layout, tree, 1, options);
+  Chain chain(nowhere);
+  append_trace(chain, tree, plan);
+  append_bounce(chain, tree, plan, plan, 1000, 1);
+  TraceCounters counters{};
+  counters.rays.x = 2000;
+  counters.hits.x = 500;
+  counters.steps = {30000, 1};
+  std::map<std::string, std::uint64_t> bytes;
+  for (const Step& step : chain.steps()) {
+    if (stage_of(step)) bytes[stage_of(step)->name] += modelled_bytes(step, counts_of_trace(counters));
+  }
+  EXPECT_EQ(bytes["camera_rays"], 2000u * 48);
+  EXPECT_EQ(bytes["trace_closest"], 2000u * 64 + 64 * ((std::uint64_t{1} << 32) + 30000) + 500 * 36);
+  EXPECT_EQ(bytes["shade"], 2000u * 48 + 500 * 64 + 1000 * 12);
+  EXPECT_EQ(bytes["resolve"], 16000u);
+  EXPECT_EQ(bytes["bounce_rays"], 1000u * 96 + 250 * 36);
+}
+
+TEST(Traffic, OfAnyHitsAndCandidates) {
+  Layout layout;
+  TreeSlots tree = plan_tree(layout, 100, 199);
+  plan_wide(layout, tree);
+  AnyHitSlots any = plan_any_hits(layout, 1000);
+  const CandidateSlots candidates = plan_candidates(layout, 1000, 4);
+  TraceCounters counters{};
+  counters.rays.x = 1000;
+  counters.hits.x = 500;
+  counters.steps.x = 30000;
+  Chain chain(nowhere);
+  TraceOptions options;
+  append_any_hits(chain, tree, any, 1000, options);
+  options.walk = Walk::wide_single;
+  append_any_hits(chain, tree, any, 1000, options);
+  append_candidates(chain, tree, candidates, 1000, options);
+  const auto bytes = [&](std::size_t step) {
+    return modelled_bytes(chain.steps()[step], counts_of_trace(counters));
+  };
+  EXPECT_EQ(bytes(0), 1000u * 36 + 30000 * 64 + 500 * 36);
+  EXPECT_EQ(bytes(1), 1000u * 36 + 30000 * 96 + 500 * 36);
+  EXPECT_EQ(bytes(2), 1000u * 36 + 30000 * 64 + 500 * 8);
+}
+
+}  // namespace
+}  // namespace coppice
