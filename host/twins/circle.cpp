@@ -17,7 +17,9 @@ float polynomial(const float (&coefficients)[N], float y) {
   return value;
 }
 
-OnCircle beside_quarter(int whole, float x) {
+}  // namespace
+
+OnCircle circle_beside_quarter(int whole, float x) {
   static const float for_cos[] = {TURN_COS_0, TURN_COS_1, TURN_COS_2, TURN_COS_3, TURN_COS_4};
   static const float for_sin[] = {TURN_SIN_0, TURN_SIN_1, TURN_SIN_2, TURN_SIN_3, TURN_SIN_4};
   const float c = polynomial(for_cos, x * x), s = x * polynomial(for_sin, x * x);
@@ -33,17 +35,15 @@ OnCircle beside_quarter(int whole, float x) {
   }
 }
 
-}  // namespace
-
 OnCircle circle_at(float turns) {
   const float quarters = 4 * (turns - std::floor(turns)), nearest = std::floor(quarters + 0.5f);
-  return beside_quarter(static_cast<int>(nearest), quarters - nearest);
+  return circle_beside_quarter(static_cast<int>(nearest), quarters - nearest);
 }
 
 OnCircle circle_at_part(std::uint32_t part) {
   const std::uint32_t whole = (part + (1u << 29)) >> 30;
   const auto beside = static_cast<std::int32_t>(part - (whole << 30));
-  return beside_quarter(static_cast<int>(whole), static_cast<float>(beside >> 5) * 0x1p-25f);
+  return circle_beside_quarter(static_cast<int>(whole), static_cast<float>(beside >> 5) * 0x1p-25f);
 }
 
 }  // namespace coppice::twins
