@@ -1,5 +1,5 @@
-// What a surface reflects and transmits: a diffuse lobe (Lambert), a reflecting one (a mirror, or GGX: Walter et al. 2007,
-// "Microfacet Models for Refraction through Rough Surfaces", with the height-correlated masking of Heitz 2014,
+// What a surface reflects and transmits: a diffuse lobe (Lambert), a reflecting one (a mirror, or GGX: Walter et al.
+// 2007, "Microfacet Models for Refraction through Rough Surfaces", with the height-correlated masking of Heitz 2014,
 // "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs", JCGT 3(2)), and the transmission of a
 // dielectric, through facets where it is rough. Visible facets are sampled by spherical caps: Dupuy and Benyoub 2023,
 // "Sampling Visible GGX Normals with Spherical Caps". `view` and `light` are unit and point away from the surface.
