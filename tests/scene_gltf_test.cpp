@@ -180,7 +180,7 @@ TEST(Gltf, MaterialsInTermsOfMtl) {
   EXPECT_EQ(wood.opacity, 0.75f);
   EXPECT_EQ(wood.index_of_refraction, 1.25f);
   EXPECT_EQ(wood.illum, 2);
-  EXPECT_EQ(wood.diffuse_map, "wood.png");
+  EXPECT_EQ(wood.diffuse_map.name, "wood.png");
   EXPECT_EQ(scene.materials[2].opacity, 0.25f);
   EXPECT_EQ(scene.materials[2].illum, 7);
   EXPECT_EQ(scene.materials[3].opacity, 0.0f);

@@ -31,7 +31,7 @@ TEST_F(ObjColours, ReadsMaterials) {
   EXPECT_EQ(red.index_of_refraction, 1.5f);
   EXPECT_EQ(red.opacity, 0.25f);
   EXPECT_EQ(red.illum, 7);
-  EXPECT_EQ(red.diffuse_map, "tex/red.png");
+  EXPECT_EQ(red.diffuse_map.name, "tex/red.png");
   EXPECT_EQ(scene.materials[2].opacity, 0.75f);
   EXPECT_TRUE(scene.warnings.empty());
 }

@@ -49,12 +49,13 @@ std::string corner(std::mt19937& random, int vertex_count) {
 
 // Mostly plain lines; `odd` of 64 are not.
 std::string random_obj(std::mt19937& random, unsigned odd) {
-  static const std::vector<std::string> rest = {"vt 0.5 0.25",  "vn 0 0 1", "g a b", "o x",
-                                                "s off",        "# c",      "",      "usemtl red",
-                                                "usemtl  blue", "\tvt 1",   "g"};
+  static const std::vector<std::string> rest = {
+      "vt 0.5 0.25", "vn 0 0 1", "g a b", "o x",        "vt 1e-3 -7 0", "vt 2 # c", "vn 0.6 .8 0 1",
+      "s off",       "# c",      "",      "usemtl red", "usemtl  blue", "\tvt 1",   "g"};
   static const std::vector<std::string> strange = {
-      "l 1 2",      "f 1 2", "f +1 2 3 # c",  "v 0 nan 0", "v 0 0 \\\n 1", "# \\", "v 1 2 3 0.1 0.2 0.3",
-      "usemtl RED", "p 1",   "f 1 2 3 \\\n3", "f 1 2 3#"};
+      "l 1 2",         "f 1 2", "f +1 2 3 # c",  "v 0 nan 0", "v 0 0 \\\n 1", "# \\", "v 1 2 3 0.1 0.2 0.3",
+      "usemtl RED",    "p 1",   "f 1 2 3 \\\n3", "f 1 2 3#",  "vt nan 1",     "vt",   "vn 1",
+      "f 1/x 2/0 3/+1"};
   std::string text;
   int vertex_count = 0;
   for (int line = 0; line < 300; ++line) {

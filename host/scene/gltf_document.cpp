@@ -100,25 +100,6 @@ std::string decode_base64(const GltfDocument& document, const std::string& point
   return bytes;
 }
 
-std::string percent_decoded(std::string_view uri) {
-  const auto digit = [](char c) {
-    return c >= '0' && c <= '9'   ? c - '0'
-           : c >= 'a' && c <= 'f' ? c - 'a' + 10
-           : c >= 'A' && c <= 'F' ? c - 'A' + 10
-                                  : -1;
-  };
-  std::string result;
-  for (std::size_t i = 0; i < uri.size(); ++i) {
-    if (uri[i] == '%' && i + 2 < uri.size() && digit(uri[i + 1]) >= 0 && digit(uri[i + 2]) >= 0) {
-      result += static_cast<char>(digit(uri[i + 1]) * 16 + digit(uri[i + 2]));
-      i += 2;
-    } else {
-      result += uri[i];
-    }
-  }
-  return result;
-}
-
 std::string bytes_of_uri(const GltfDocument& document, const std::string& pointer, const std::string& uri,
                          const FindBytes& find) {
   if (!uri.starts_with("data:")) {
@@ -130,12 +111,7 @@ std::string bytes_of_uri(const GltfDocument& document, const std::string& pointe
       document.fail(pointer, error.what());
     }
   }
-  const std::size_t comma = uri.find(',');
-  const std::string_view head = std::string_view(uri).substr(0, comma);
-  if (comma == uri.npos || !head.ends_with(";base64")) {
-    document.fail(pointer, "'" + printable(head) + "', expected data:...;base64,...");
-  }
-  return decode_base64(document, pointer, std::string_view(uri).substr(comma + 1));
+  return document.bytes_of_data_uri(uri, pointer);
 }
 
 // The contents of all buffers, each exactly as long as it says.
@@ -236,6 +212,48 @@ void check_indices(const GltfDocument& document) {
 }
 
 }  // namespace
+
+std::string percent_decoded(std::string_view uri) {
+  const auto digit = [](char c) {
+    return c >= '0' && c <= '9'   ? c - '0'
+           : c >= 'a' && c <= 'f' ? c - 'a' + 10
+           : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                  : -1;
+  };
+  std::string result;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    if (uri[i] == '%' && i + 2 < uri.size() && digit(uri[i + 1]) >= 0 && digit(uri[i + 2]) >= 0) {
+      result += static_cast<char>(digit(uri[i + 1]) * 16 + digit(uri[i + 2]));
+      i += 2;
+    } else {
+      result += uri[i];
+    }
+  }
+  return result;
+}
+
+std::string GltfDocument::bytes_of_data_uri(const std::string& uri, const std::string& pointer) const {
+  const std::size_t comma = uri.find(',');
+  const std::string_view head = std::string_view(uri).substr(0, comma);
+  if (comma == uri.npos || !head.ends_with(";base64")) {
+    fail(pointer, "'" + printable(head) + "', expected data:...;base64,...");
+  }
+  return decode_base64(*this, pointer, std::string_view(uri).substr(comma + 1));
+}
+
+std::string GltfDocument::bytes_of_view(int view, const std::string& user) const {
+  check_index(user, view, model.bufferViews.size(), "buffer views");
+  const tinygltf::BufferView& of = model.bufferViews[static_cast<std::size_t>(view)];
+  const std::string pointer = "/bufferViews/" + std::to_string(view);
+  check_index(pointer + "/buffer", of.buffer, model.buffers.size(), "buffers");
+  const std::vector<unsigned char>& all = model.buffers[static_cast<std::size_t>(of.buffer)].data;
+  if (of.byteOffset > all.size() || of.byteLength > all.size() - of.byteOffset) {
+    fail(pointer, "bytes " + std::to_string(of.byteOffset) + " to " +
+                      std::to_string(of.byteOffset + of.byteLength) +
+                      ", expected an end within the buffer's " + std::to_string(all.size()));
+  }
+  return {reinterpret_cast<const char*>(all.data()) + of.byteOffset, of.byteLength};
+}
 
 void GltfDocument::fail(const std::string& pointer, const std::string& what) const {
   fail_at(name, pointer, what);

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "scene/bounds.h"
+#include "scene/corner_attributes.h"
 #include "scene/gltf_animation.h"
 #include "scene/gltf_materials.h"
 #include "scene/gltf_mesh.h"
@@ -20,6 +21,16 @@ namespace {
 using namespace nlohmann::literals;
 
 constexpr std::size_t MOST_JOINTS = 65536;  // what Motion::joints can name
+
+// A vertex has one of each, where the primitive has them.
+Scene corners_of_primitive(const GltfPrimitive& primitive) {
+  Scene corners;
+  corners.texcoords = primitive.texcoords;
+  if (!corners.texcoords.empty()) corners.texcoord_index = primitive.triangles;
+  corners.normals = primitive.normals;
+  if (!corners.normals.empty()) corners.normal_index = primitive.triangles;
+  return corners;
+}
 
 class GltfFlattener {
  public:
@@ -187,6 +198,9 @@ void GltfFlattener::add_primitive(std::uint32_t node, const GltfPrimitive& primi
                              (is_mirrored ? glm::uvec3(triangle.x, triangle.z, triangle.y) : triangle));
   }
   scene_.material_index.resize(scene_.indices.size(), primitive.material);
+  const bool keeps_normals = stands_still && added.empty() && !morphs_[node];
+  append_corner_attributes(corners_of_primitive(primitive), 0, primitive.triangles.size(),
+                           {to_scene, is_mirrored, keeps_normals}, scene_);
   for (std::size_t v = 0; v < count && has_joints_; ++v) {
     const auto at = [&](std::size_t k) {
       return static_cast<std::uint16_t>(joint + (is_skinned ? primitive.joints[v][k] : 0));
@@ -237,7 +251,7 @@ Scene GltfFlattener::flatten() {
     if (model_.nodes[node].camera >= 0) add_camera(node);
     if (model_.nodes[node].mesh >= 0) add_mesh(node);
   }
-  scene_.materials = read_gltf_materials(document_);
+  scene_.materials = read_gltf_materials(document_, notes_);
   if (document_.json.contains("/extensions/KHR_lights_punctual"_json_pointer)) {
     notes_.add("/extensions/KHR_lights_punctual", "lights are not used");
   }

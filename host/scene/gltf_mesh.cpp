@@ -8,9 +8,10 @@
 namespace coppice {
 namespace {
 
-std::vector<glm::vec3> vectors_of(const std::vector<float>& numbers) {
-  std::vector<glm::vec3> vectors(numbers.size() / 3);
-  if (!vectors.empty()) std::memcpy(vectors.data(), numbers.data(), vectors.size() * sizeof(glm::vec3));
+template <class Vector = glm::vec3>
+std::vector<Vector> vectors_of(const std::vector<float>& numbers) {
+  std::vector<Vector> vectors(numbers.size() * sizeof(float) / sizeof(Vector));
+  if (!vectors.empty()) std::memcpy(vectors.data(), numbers.data(), vectors.size() * sizeof(Vector));
   return vectors;
 }
 
@@ -62,6 +63,19 @@ void check_count(const GltfDocument& document, const GltfAccessors& accessors, i
   document.fail("/accessors/" + std::to_string(accessor) + "/count",
                 std::to_string(count) + ", expected " + std::to_string(primitive.positions.size()) +
                     ", the number of vertices of " + primitive.pointer);
+}
+
+void read_corner_attributes(const GltfDocument& document, const GltfAccessors& accessors,
+                            const tinygltf::Primitive& from, GltfPrimitive& primitive) {
+  const auto read = [&](const char* attribute, const char* type) {
+    const auto found = from.attributes.find(attribute);
+    if (found == from.attributes.end()) return std::vector<float>{};
+    const std::string user = primitive.pointer + "/attributes/" + attribute;
+    check_count(document, accessors, found->second, primitive, user);
+    return accessors.floats(found->second, type, user);
+  };
+  primitive.texcoords = vectors_of<glm::vec2>(read("TEXCOORD_0", "VEC2"));
+  primitive.normals = vectors_of(read("NORMAL", "VEC3"));
 }
 
 void read_targets(const GltfDocument& document, const GltfAccessors& accessors,
@@ -177,6 +191,7 @@ GltfPrimitive read_gltf_primitive(const GltfDocument& document, const GltfAccess
     primitive.material = static_cast<std::uint32_t>(from.material) + 1;
   }
   if (from.attributes.contains("COLOR_0")) notes.add(primitive.pointer, "vertex colours are not used");
+  read_corner_attributes(document, accessors, from, primitive);
   read_targets(document, accessors, from, primitive);
   if (skin_joints > 0) read_influences(document, accessors, from, skin_joints, primitive, notes);
   return primitive;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <string>
@@ -17,6 +18,8 @@ struct GltfPrimitive {
   std::string pointer;
   std::vector<glm::vec3> positions;
   std::vector<glm::uvec3> triangles;                 // in range
+  std::vector<glm::vec2> texcoords;                  // one a vertex, or none
+  std::vector<glm::vec3> normals;                    // one a vertex, or none
   std::uint32_t material = 0;                        // into the result of read_gltf_materials
   std::vector<std::vector<glm::vec3>> targets;       // morph targets, one offset a vertex; empty for all 0
   std::vector<std::array<std::uint16_t, 4>> joints;  // of the skin; one a vertex if asked for, in range

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "scene/bounds.h"
+#include "scene/corner_attributes.h"
 #include "scene/input_error.h"
 #include "scene/motion.h"
 #include "scene/random.h"
@@ -44,6 +45,8 @@ void append_instance(const Scene& scene, const Instance& instance, Scene& flat) 
     flat.positions.push_back(moved(instance.transform, scene.positions[vertex]));
   std::for_each(first, last,
                 [&](const glm::uvec3& corners) { flat.indices.push_back(corners - low + base); });
+  append_corner_attributes(scene, mesh.first_triangle, mesh.triangle_count,
+                           {glm::dmat4(glm::mat4(instance.transform))}, flat);
   const auto materials = scene.material_index.begin() + mesh.first_triangle;
   flat.material_index.insert(flat.material_index.end(), materials, materials + mesh.triangle_count);
 }
@@ -116,6 +119,10 @@ Scene flattened(Scene scene) {
   scene.positions = std::move(flat.positions);
   scene.indices = std::move(flat.indices);
   scene.material_index = std::move(flat.material_index);
+  scene.texcoords = std::move(flat.texcoords);
+  scene.texcoord_index = std::move(flat.texcoord_index);
+  scene.normals = std::move(flat.normals);
+  scene.normal_index = std::move(flat.normal_index);
   scene.meshes.clear();
   scene.instances.clear();
   scene.swarm.reset();

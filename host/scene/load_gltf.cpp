@@ -3,6 +3,7 @@
 #include "scene/gltf_document.h"
 #include "scene/gltf_flatten.h"
 #include "scene/input_error.h"
+#include "scene/material_maps.h"
 #include "scene/obj_file.h"
 #include "scene/obj_offset.h"
 #include "scene/printable.h"
@@ -27,6 +28,7 @@ Scene load_gltf(const std::filesystem::path& path, const GltfReading& reading) {
     return std::string(read_obj_file(path.parent_path() / uri).text());
   };
   Scene scene = parse_gltf(file.text(), printable(path), find, reading);
+  for (Material& material : scene.materials) lead_maps_from(material, path.parent_path());
   scene.name = printable(path.stem());
   return scene;
 }

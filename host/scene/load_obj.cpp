@@ -1,5 +1,6 @@
 #include "scene/load_obj.h"
 
+#include "scene/material_maps.h"
 #include "scene/obj_file.h"
 #include "scene/obj_materials.h"
 #include "scene/obj_offset.h"
@@ -44,6 +45,10 @@ Scene parse_obj(std::string_view text, const std::string& name, const FindMtl& f
     mesh = read_obj_mesh(text, name, scene.offset, reading, warnings);
     scene.positions = std::move(mesh.positions);
     scene.indices = std::move(mesh.triangles);
+    scene.texcoords = std::move(mesh.texcoords);
+    scene.texcoord_index = std::move(mesh.texcoord_index);
+    scene.normals = std::move(mesh.normals);
+    scene.normal_index = std::move(mesh.normal_index);
     scene.face_digest = mesh.faces.value();
     const glm::dvec3 offset = reread < 2 ? find_offset(scene) : glm::dvec3{0};
     if (offset == glm::dvec3{0}) break;
@@ -65,6 +70,7 @@ Scene load_obj(const std::filesystem::path& path) {
   }
   const auto find_mtl = [&](const std::string& mtl, MtlMatch match) { return folder.find(mtl, match); };
   Scene scene = parse_obj(file.text(), name, find_mtl, reading);
+  for (Material& material : scene.materials) lead_maps_from(material, path.parent_path());
   scene.name = printable(path.stem());
   return scene;
 }

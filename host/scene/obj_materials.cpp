@@ -1,5 +1,6 @@
 #include "scene/obj_materials.h"
 
+#include "scene/material_maps.h"
 #include "scene/obj_lines.h"
 #include "scene/obj_mtl.h"
 #include "scene/printable.h"
@@ -130,7 +131,8 @@ void ObjMaterials::take_near(const std::string& name, const std::string& stem, c
 void ObjMaterials::add_materials(const FoundMtl& file, const std::string& place) {
   if (!files_.insert(file.name).second) return;
   const std::string name = printable(std::string_view(file.name));
-  const std::vector<Material> read = parse_mtl(file.text, name, warnings_);
+  std::vector<Material> read = parse_mtl(file.text, name, warnings_);
+  for (Material& material : read) lead_maps_from(material, std::filesystem::path(file.name).parent_path());
   if (read.empty()) {
     warnings_.add(ObjWarning::MTL_WITHOUT_MATERIAL, place, "no material in " + in_quotes(file.name));
   }

@@ -11,7 +11,9 @@
 #include <optional>
 #include <sstream>
 
+#include "scene/material_maps.h"
 #include "scene/obj_lines.h"
+#include "scene/obj_mtl_maps.h"
 #include "scene/printable.h"
 
 namespace coppice {
@@ -19,10 +21,20 @@ namespace {
 
 // The statements that are read, spelt as tinyobjloader knows them.
 constexpr std::array KEYWORDS = std::to_array<std::string_view>(
-    {"newmtl", "Ka", "Kd", "Ks", "Ke", "Kt", "Tf", "Ns", "Ni", "d", "Tr", "illum", "map_Kd"});
+    {"newmtl", "Ka", "Kd", "Ks", "Ke", "Kt", "Tf", "Ns", "Ni", "d", "Tr", "illum", "Pr", "Pm"});
+
+// Of a keyword in lower case; none for others.
+const MaterialMap* find_map(std::string_view keyword) {
+  if (keyword == "bump") keyword = "map_bump";
+  if (keyword == "map_kn") keyword = "norm";
+  const auto found = std::ranges::find_if(
+      MATERIAL_MAPS, [&](const MaterialMap& kind) { return lower_case(kind.name) == keyword; });
+  return found == MATERIAL_MAPS.end() ? nullptr : &*found;
+}
 
 std::string_view usual_spelling(std::string_view keyword) {
   const std::string lower = lower_case(keyword);
+  if (const MaterialMap* const kind = find_map(lower)) return kind->name;
   const auto found =
       std::find_if(KEYWORDS.begin(), KEYWORDS.end(), [&](auto known) { return lower_case(known) == lower; });
   return found == KEYWORDS.end() ? keyword : *found;
@@ -98,9 +110,15 @@ class MaterialText {
       opacity_place_ = place;
       return;
     }
+    if (const MaterialMap* const kind = find_map(lower_case(keyword)))
+      return add_map(*kind, rest, place, warnings);
+    if (keyword == "Pr" || keyword == "Pm") {
+      if (words.empty() || !is_number(words[0])) return;
+      const float number = std::strtof(std::string(words[0]).c_str(), nullptr);
+      (keyword == "Pr" ? maps_.roughness : maps_.metallic) = std::clamp(number, 0.0f, 1.0f);
+      return;
+    }
     text_ += keyword;
-    // The name of a file may hold anything, blanks too.
-    if (keyword.starts_with("map_")) return append_line(rest);
     append(words);
   }
 
@@ -140,15 +158,15 @@ class MaterialText {
     if (keyword == "Kd") has_diffuse_ = true;
   }
 
-  void append_line(std::string_view line) {
-    Words words(line);
-    std::size_t end = 0;
-    for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
-      const auto begin = static_cast<std::size_t>(word.data() - line.data());
-      text_.append(end == 0 ? " " : line.substr(end, begin - end)).append(shorten_exponent(word));
-      end = begin + word.size();
+  void add_map(const MaterialMap& kind, std::string_view rest, const std::string& place,
+               ObjWarnings& warnings) {
+    MtlMap read = parse_mtl_map(rest);
+    if (read.has_unused) {
+      warnings.add(ObjWarning::TEXTURE_OPTION, place,
+                   std::string(kind.name) + " of material '" + printable(std::string_view(name_)) +
+                       "' has -mm or -t, which are not used");
     }
-    text_ += '\n';
+    if (read.map) maps_.*kind.map = std::move(read.map);
   }
 
   void append(const std::vector<std::string_view>& words) {
@@ -173,7 +191,7 @@ class MaterialText {
   }
 
   Material to_material(const tinyobj::material_t& mtl) const {
-    Material material;
+    Material material = maps_;
     material.name = name_;
     if (has_diffuse_) material.diffuse = colour("Kd", mtl.diffuse);
     material.specular = colour("Ks", mtl.specular);
@@ -182,13 +200,13 @@ class MaterialText {
     material.opacity = std::clamp(finite_or(mtl.dissolve, 1), 0.0f, 1.0f);
     material.index_of_refraction = finite_or(mtl.ior, 1);
     material.illum = mtl.illum;
-    material.diffuse_map = mtl.diffuse_texname;
     return material;
   }
 
   std::string name_, text_;
   std::map<std::string_view, bool> is_xyz_;  // by keyword, those of KEYWORDS
   bool has_diffuse_ = false;
+  Material maps_;                                       // and the numbers that tinyobjloader does not read
   std::optional<std::string> dissolve_, transparency_;  // the numbers
   std::string opacity_place_;
 };
@@ -209,7 +227,8 @@ std::vector<Material> parse_mtl(std::string_view file, const std::string& name, 
       const std::string_view material = trim(words.rest());
       current.reset();  // what follows a newmtl without a name is no material
       if (!material.empty()) current.emplace(std::string(material));
-    } else if (current && std::find(KEYWORDS.begin(), KEYWORDS.end(), keyword) != KEYWORDS.end()) {
+    } else if (current && (find_map(lower_case(keyword)) ||
+                           std::find(KEYWORDS.begin(), KEYWORDS.end(), keyword) != KEYWORDS.end())) {
       current->add(keyword, trim(words.rest()), name + ":" + std::to_string(line), warnings);
     }
     line += statement.lines;

@@ -1,11 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "scene/scene.h"
 
 namespace coppice {
 
@@ -14,6 +17,24 @@ struct ObjFinding {
   std::size_t count = 0, line = 0;
   void add(std::size_t at_line) {
     if (count++ == 0) line = at_line;
+  }
+};
+
+// What faces' corners have of one kind, texture coordinates or normals, beside their places. `of_corner` is
+// empty, or has one index a corner, counted as the vertices' are, NO_ATTRIBUTE where there is none.
+struct ObjAttribute {
+  std::vector<std::uint32_t> of_corner;
+  std::vector<std::uint32_t> relative;  // places in it of those that count from the part's begin
+
+  // The index as written, 0 for none, of the corner that is `corner`-th in the part. `before` is the number
+  // of the part's coordinates, or normals, before it.
+  void add(std::size_t corner, std::int32_t index, std::size_t before) {
+    if (index == 0 && of_corner.empty()) return;
+    of_corner.resize(corner, NO_ATTRIBUTE);
+    if (index < 0) relative.push_back(static_cast<std::uint32_t>(corner));
+    of_corner.push_back(index == 0  ? NO_ATTRIBUTE
+                        : index > 0 ? static_cast<std::uint32_t>(index - 1)
+                                    : static_cast<std::uint32_t>(before) + static_cast<std::uint32_t>(index));
   }
 };
 
@@ -28,6 +49,9 @@ struct ObjPart {
   std::vector<std::uint32_t> relative;       // places in `corners` of those that count from the part's begin
   std::vector<std::uint32_t> face_ends;      // for each face, where it ends in `corners`
   std::vector<std::uint32_t> polygon_lines;  // of each face with more than three corners
+  std::vector<glm::vec2> texcoords;
+  std::vector<glm::vec3> normals;
+  ObjAttribute corner_texcoords, corner_normals;
 
   struct MaterialUse {
     std::size_t face;  // the first that has it
@@ -52,7 +76,7 @@ struct ObjPart {
   std::int32_t greatest_index = 0;  // as written
   std::size_t greatest_line = 0;
 
-  ObjFinding small_faces, non_finite, coloured, free_form;
+  ObjFinding small_faces, non_finite, coloured, free_form, odd_attributes;
 
   bool is_binary = false;  // holds a zero byte; nothing else is read then
   struct Error {

@@ -37,7 +37,8 @@ class PlainReader {
     if (first == '#') return skip_comment();
     if (first == 'v' && is_blank(second)) return ++at_, part_.recognised = true, read_vertex();
     if (first == 'f' && is_blank(second)) return ++at_, part_.recognised = true, read_face();
-    if (first == 'v' && (second == 'n' || second == 't') && ends_word(third)) return read_over();
+    if (first == 'v' && second == 't' && ends_word(third)) return at_ += 2, read_texcoord();
+    if (first == 'v' && second == 'n' && ends_word(third)) return at_ += 2, read_normal();
     if ((first == 'g' || first == 'o' || first == 's') && ends_word(second)) return read_over();
     return read_material(std::string_view(at_, left));
   }
@@ -80,6 +81,28 @@ class PlainReader {
     return true;
   }
 
+  // One number at least; of a third one nothing.
+  bool read_texcoord() {
+    part_.recognised = true;
+    glm::vec2& texcoord = part_.texcoords.emplace_back(0.0f);
+    skip_blanks();
+    if (!read_number(texcoord.x)) return false;
+    skip_blanks();
+    if (!at_line_end() && *at_ != '#' && !read_number(texcoord.y)) return false;
+    std::string_view ignored;
+    return take_line(ignored);
+  }
+
+  bool read_normal() {
+    part_.recognised = true;
+    glm::vec3& normal = part_.normals.emplace_back(0.0f);
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!read_coordinate(0, normal[axis])) return false;
+    }
+    std::string_view ignored;
+    return take_line(ignored);
+  }
+
   bool read_coordinate(double offset, float& result) {
     skip_blanks();
     if (offset != 0) {
@@ -115,26 +138,45 @@ class PlainReader {
     return at_line_end() ? end_line() : skip_comment();
   }
 
-  // i, i/j, i//k or i/j/k. Only i is used.
+  // i, i/j, i//k or i/j/k.
   bool read_corner() {
-    const bool is_negative = *at_ == '-';
+    const std::optional<std::int32_t> index = read_index();
+    if (!index) return false;
+    std::int32_t texcoord = 0, normal = 0;
+    if (at_ != end_ && *at_ == '/') {
+      ++at_;
+      if (!read_attribute_index(texcoord)) return false;
+      if (at_ != end_ && *at_ == '/' && (++at_, !read_attribute_index(normal))) return false;
+    }
+    if (!(at_line_end() || is_blank(*at_))) return false;
+    const std::size_t corner = part_.corners.size();
+    part_.corner_texcoords.add(corner, texcoord, part_.texcoords.size());
+    part_.corner_normals.add(corner, normal, part_.normals.size());
+    part_.note_index(*index, part_.line_count);
+    part_.add_corner(*index, part_.positions.size());
+    return true;
+  }
+
+  // Nothing for what is no number, is 0, or may not fit.
+  std::optional<std::int32_t> read_index() {
+    const bool is_negative = at_ != end_ && *at_ == '-';
     if (is_negative) ++at_;
     const char* const digits = at_;
     std::int32_t index = 0;
     for (; at_ != end_ && is_digit(*at_); ++at_) {
-      if (at_ - digits == 9) return false;  // may not fit
+      if (at_ - digits == 9) return std::nullopt;
       index = index * 10 + (*at_ - '0');
     }
-    if (index == 0) return false;
-    if (is_negative) index = -index;
-    int slashes = 0;
-    if (at_ != end_ && *at_ == '/') {
-      for (; at_ != end_ && (is_digit(*at_) || *at_ == '/' || *at_ == '-'); ++at_) slashes += *at_ == '/';
-    }
-    if (slashes > 2 || !(at_line_end() || is_blank(*at_))) return false;
-    part_.note_index(index, part_.line_count);
-    part_.add_corner(index, part_.positions.size());
-    return true;
+    if (index == 0) return std::nullopt;
+    return is_negative ? -index : index;
+  }
+
+  // Behind a slash; 0 where nothing stands there.
+  bool read_attribute_index(std::int32_t& index) {
+    if (at_line_end() || is_blank(*at_) || *at_ == '/') return true;
+    const std::optional<std::int32_t> read = read_index();
+    if (read) index = *read;
+    return read.has_value();
   }
 
   void skip_blanks() {

@@ -8,7 +8,7 @@
 
 #include "scene/input_error.h"
 #include "scene/obj_lines.h"
-#include "scene/triangulate.h"
+#include "scene/obj_polygons.h"
 
 namespace coppice {
 namespace {
@@ -54,8 +54,11 @@ std::vector<ObjPart> read_parts(std::string_view text, glm::dvec3 offset, const 
 
 // Where a part stands in the file.
 struct Place {
-  std::size_t lines = 0, vertices = 0, faces = 0, triangles = 0;  // before it
+  std::size_t lines = 0, vertices = 0, faces = 0, triangles = 0, texcoords = 0, normals = 0;  // before it
 };
+
+constexpr const char* NO_SUCH_ATTRIBUTE =
+    "corner whose texture coordinates or normal are not there, it has none";
 
 // Puts parts together: what each could not know of the others is checked, in the file's order.
 class Joining {
@@ -72,14 +75,21 @@ class Joining {
       places_.push_back(end_);
       end_.lines += part.line_count;
       end_.vertices += part.positions.size();
+      end_.texcoords += part.texcoords.size();
+      end_.normals += part.normals.size();
       end_.faces += part.face_ends.size();
       end_.triangles += part.corners.size() - 2 * part.face_ends.size();
     }
     check_all();
     mesh_.positions.resize(end_.vertices);
+    make_room_for_attributes();
     for_each_part([&](std::size_t i) {
-      std::copy(parts_[i].positions.begin(), parts_[i].positions.end(),
-                mesh_.positions.begin() + static_cast<std::ptrdiff_t>(places_[i].vertices));
+      const auto copy_to = [](const auto& from, auto& to, std::size_t place) {
+        if (!to.empty()) std::copy(from.begin(), from.end(), to.begin() + static_cast<std::ptrdiff_t>(place));
+      };
+      copy_to(parts_[i].positions, mesh_.positions, places_[i].vertices);
+      copy_to(parts_[i].texcoords, mesh_.texcoords, places_[i].texcoords);
+      copy_to(parts_[i].normals, mesh_.normals, places_[i].normals);
     });
     join_triangles();
     return std::move(mesh_);
@@ -110,6 +120,7 @@ class Joining {
     warn(ObjWarning::FACE_TOO_SMALL, part.small_faces, "face with fewer than three corners, left out");
     warn(ObjWarning::NOT_FINITE, part.non_finite, "vertex with a coordinate that is no finite number");
     warn(ObjWarning::FREE_FORM, part.free_form, "curves and surfaces are not read");
+    warn(ObjWarning::ATTRIBUTE_INDEX, part.odd_attributes, NO_SUCH_ATTRIBUTE);
     warn(ObjWarning::VERTEX_COLOURS, part.coloured, "colours of vertices are not used");
   }
 
@@ -127,14 +138,57 @@ class Joining {
     if (end_.faces == 0) warnings_.add(ObjWarning::NO_FACES, name_, "no faces");
   }
 
+  // What no face uses is not kept.
+  void make_room_for_attributes() {
+    const auto are_used = [&](ObjAttribute ObjPart::*attribute) {
+      return std::ranges::any_of(parts_,
+                                 [&](const ObjPart& part) { return !(part.*attribute).of_corner.empty(); });
+    };
+    if (end_.texcoords > 0 && are_used(&ObjPart::corner_texcoords)) {
+      mesh_.texcoords.resize(end_.texcoords);
+      mesh_.texcoord_index.resize(end_.triangles, glm::uvec3(NO_ATTRIBUTE));
+    }
+    if (end_.normals > 0 && are_used(&ObjPart::corner_normals)) {
+      mesh_.normals.resize(end_.normals);
+      mesh_.normal_index.resize(end_.triangles, glm::uvec3(NO_ATTRIBUTE));
+    }
+  }
+
+  // Counted from the file's begin; returns how many there are not. A part whose corners have none, or a file
+  // without any, has an empty list.
+  static std::size_t settle(ObjAttribute& attribute, std::size_t corners, std::size_t before,
+                            std::size_t count) {
+    if (attribute.of_corner.empty()) return 0;
+    attribute.of_corner.resize(corners, NO_ATTRIBUTE);
+    std::size_t missing = 0;
+    for (const std::uint32_t at : attribute.relative) {
+      attribute.of_corner[at] += static_cast<std::uint32_t>(before);
+      missing += attribute.of_corner[at] == NO_ATTRIBUTE;  // one before the first
+    }
+    for (std::uint32_t& index : attribute.of_corner) {
+      if (index < count || index == NO_ATTRIBUTE) continue;
+      index = NO_ATTRIBUTE;
+      ++missing;
+    }
+    if (count == 0) attribute.of_corner.clear();
+    return missing;
+  }
+
   void join_triangles() {
     std::vector<ObjFinding> crossing(parts_.size());
     std::vector<std::vector<ObjMesh::MaterialUse>> uses(parts_.size());
     std::vector<FaceDigest> faces(parts_.size());
+    std::vector<std::size_t> missing(parts_.size());
     mesh_.triangles.resize(end_.triangles);
-    for_each_part([&](std::size_t i) { faces[i] = cut_faces(i, crossing[i], uses[i]); });
+    for_each_part([&](std::size_t i) {
+      ObjPart& part = parts_[i];
+      missing[i] = settle(part.corner_texcoords, part.corners.size(), places_[i].texcoords, end_.texcoords) +
+                   settle(part.corner_normals, part.corners.size(), places_[i].normals, end_.normals);
+      faces[i] = cut_faces(i, crossing[i], uses[i]);
+    });
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       end_.lines = places_[i].lines;
+      warnings_.add(ObjWarning::ATTRIBUTE_INDEX, name_, NO_SUCH_ATTRIBUTE, missing[i]);
       mesh_.faces.add(faces[i]);
       warn(ObjWarning::POLYGON_CROSSES, crossing[i],
            "polygon with edges that cross or go round twice, cut into triangles that may overlap");
@@ -153,7 +207,7 @@ class Joining {
     for (const std::uint32_t at : part.relative) {
       part.corners[at] += static_cast<std::uint32_t>(place.vertices);
     }
-    std::vector<glm::uvec3> cut;  // reused
+    PolygonCutter cutter(part, mesh_);
     std::size_t triangle = place.triangles, begin = 0, polygon = 0;
     auto use = part.uses.begin();
     const auto begin_uses = [&](std::size_t face) {
@@ -167,15 +221,12 @@ class Joining {
       const std::uint32_t* const corners = part.corners.data() + begin;
       digest.add(place.faces + face, {corners, end - begin});
       if (end - begin == 3) {
-        mesh_.triangles[triangle++] = {corners[0], corners[1], corners[2]};
+        mesh_.triangles[triangle] = {corners[0], corners[1], corners[2]};
+        cutter.set_attributes(triangle++, begin, {0, 1, 2});
       } else {
-        cut.clear();
-        if (!triangulate(mesh_.positions, {corners, end - begin}, cut)) {
-          crossing.add(part.polygon_lines[polygon]);
-        }
+        if (!cutter.cut(begin, end, triangle)) crossing.add(part.polygon_lines[polygon]);
         ++polygon;
-        std::copy(cut.begin(), cut.end(), mesh_.triangles.begin() + static_cast<std::ptrdiff_t>(triangle));
-        triangle += cut.size();
+        triangle += end - begin - 2;
       }
       begin = end;
     }

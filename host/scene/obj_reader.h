@@ -25,6 +25,11 @@ struct ObjReading {
 struct ObjMesh {
   std::vector<glm::vec3> positions;
   std::vector<glm::uvec3> triangles;
+  // As in Scene; the index vectors are empty where no corner has any.
+  std::vector<glm::vec2> texcoords;
+  std::vector<glm::uvec3> texcoord_index;
+  std::vector<glm::vec3> normals;
+  std::vector<glm::uvec3> normal_index;
   FaceDigest faces;
   std::vector<ObjPart::Library> libraries;  // with lines of the file
   struct MaterialUse {

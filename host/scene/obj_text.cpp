@@ -83,6 +83,9 @@ class ObjChecker {
     if (keyword == "v") {
       read_vertex(words);
       blank_out(offset_of(keyword) + 1, end);
+    } else if (keyword == "vt" || keyword == "vn") {
+      read_attribute(keyword == "vt", words);
+      blank_out(begin, end);
     } else if (keyword == "f") {
       check_face(words, begin, end);
     } else {
@@ -125,6 +128,20 @@ class ObjChecker {
     part_.positions.push_back(position);
   }
 
+  // Numbers that are missing are 0, what is no number is NaN.
+  void read_attribute(bool is_texcoord, Words words) {
+    words = Words(words.rest().substr(0, find_comment(words.rest())));
+    glm::vec3 numbers{0};
+    for (int axis = 0; axis < (is_texcoord ? 2 : 3); ++axis) {
+      if (const std::string_view word = words.next(); !word.empty())
+        numbers[axis] = parse_coordinate(word, 0);
+    }
+    if (is_texcoord)
+      part_.texcoords.emplace_back(numbers);
+    else
+      part_.normals.push_back(numbers);
+  }
+
   void check_face(Words words, std::size_t begin, std::size_t end) {
     const std::size_t comment = std::string_view(text_).substr(begin, end - begin).find('#');
     if (comment != std::string_view::npos) blank_out(begin + comment, end);
@@ -142,8 +159,8 @@ class ObjChecker {
     ++face_count_;
   }
 
-  // `word` is i, i/j, i//k or i/j/k; of these only i is looked at, for normals and texture coordinates are
-  // not used. With another slash tinyobjloader would take the rest for an index 0.
+  // `word` is i, i/j, i//k or i/j/k; i must be right, j and k are none where they are not. With another slash
+  // tinyobjloader would take the rest for an index 0.
   bool check_index(std::string_view word) {
     std::string_view digits = word.substr(0, word.find('/'));
     if (digits.starts_with('+')) digits.remove_prefix(1);
@@ -158,7 +175,24 @@ class ObjChecker {
     }
     if (index == 0) return fail("vertex index 0 is out of range: the first vertex is 1"), false;
     part_.note_index(index, line_);
+    const std::size_t slash = std::min(word.find('/'), word.size()), second = word.find('/', slash + 1);
+    const std::string_view normal = second == word.npos ? "" : word.substr(second + 1);
+    const std::string_view texcoord = slash == word.size() ? "" : word.substr(slash + 1, second - slash - 1);
+    part_.corner_texcoords.add(corner_count_, attribute_index(texcoord), part_.texcoords.size());
+    part_.corner_normals.add(corner_count_, attribute_index(normal), part_.normals.size());
+    ++corner_count_;
     return true;
+  }
+
+  // 0 for none.
+  std::int32_t attribute_index(std::string_view word) {
+    if (word.empty()) return 0;
+    if (word.starts_with('+')) word.remove_prefix(1);
+    std::int32_t index = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), index);
+    if (end == word.data() + word.size() && error == std::errc{} && index != 0) return index;
+    part_.odd_attributes.add(line_);
+    return 0;
   }
 
   void fail(std::string what) { part_.error = {line_, std::move(what)}; }
@@ -167,7 +201,7 @@ class ObjChecker {
   const glm::dvec3 offset_;
   ObjPart& part_;
   std::size_t line_ = 0;  // of the statement's first line
-  std::size_t face_count_ = 0;
+  std::size_t face_count_ = 0, corner_count_ = 0;
 };
 
 // What tinyobjloader's callbacks add to.

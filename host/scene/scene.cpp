@@ -81,6 +81,7 @@ void stand_up(Scene& scene, std::string_view up) {
   const glm::mat3 turn = turn_of(up);
   if (scene.instances.empty()) {
     for (glm::vec3& position : scene.positions) position = turn * position;
+    for (glm::vec3& normal : scene.normals) normal = turn * normal;
   }
   for (Instance& instance : scene.instances) instance.transform = turn * instance.transform;
   for (Light& light : scene.more_lights) light.place = turn * light.place;

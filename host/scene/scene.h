@@ -4,12 +4,15 @@
 #include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <glm/mat4x3.hpp>
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "scene/texture_map.h"
 
 namespace coppice {
 
@@ -23,7 +26,18 @@ struct Material {
   float opacity = 1.0f;              // d, or 1 - Tr; 0 is invisible, 1 is solid
   float index_of_refraction = 1.0f;  // Ni
   int illum = 1;                     // illumination model, 0 to 10
-  std::string diffuse_map;  // map_Kd as written, a path relative to the MTL file; empty where there is none
+  std::optional<float> roughness{};  // Pr, from 0 to 1
+  std::optional<float> metallic{};   // Pm, from 0 to 1
+  // Maps (scene/material_maps.h). Each multiplies what it is a map of; the last two of a material without
+  // that number are it.
+  TextureMap diffuse_map{};             // map_Kd
+  TextureMap opacity_map{};             // map_d
+  TextureMap emission_map{};            // map_Ke
+  TextureMap bump_map{};                // map_Bump, heights
+  TextureMap normal_map{};              // norm, directions in the tangent space of glTF
+  TextureMap roughness_map{};           // map_Pr
+  TextureMap metallic_map{};            // map_Pm
+  std::optional<float> alpha_cutoff{};  // below it in opacity_map nothing is there, above it is solid
 
   bool operator==(const Material&) const = default;
 };
@@ -53,6 +67,9 @@ struct Camera {
   glm::vec3 up{0.0f, 1.0f, 0.0f};
   float vertical_fov_degrees = 40.0f;
 };
+
+// Of a corner without texture coordinates, or without a normal.
+inline constexpr std::uint32_t NO_ATTRIBUTE = ~0u;
 
 struct Motion;  // scene/motion.h
 
@@ -91,6 +108,14 @@ struct Scene {
   int scale_exponent = 0;                     // and multiplied by 2^scale_exponent, see bring_into_range
   std::vector<glm::uvec3> indices;            // one per triangle, into positions; always in range
   std::vector<std::uint32_t> material_index;  // one per triangle, into materials; always in range
+  // What corners have beside their places (scene/corner_attributes.h). The index vectors are empty or have
+  // one element a triangle, each corner's in range or NO_ATTRIBUTE. Texture coordinates are as in the file,
+  // any floats; how they lie on an image is in TextureMap.
+  std::vector<glm::vec2> texcoords;
+  std::vector<glm::uvec3> texcoord_index;
+  // In the space of the positions, of any length, also 0 or not finite. What moves by its vertices has none.
+  std::vector<glm::vec3> normals;
+  std::vector<glm::uvec3> normal_index;
   // With instances only these are seen, and all triangles belong to meshes; without, the triangles as they
   // are.
   std::vector<InstancedMesh> meshes;
@@ -124,7 +149,7 @@ inline constexpr std::array<std::string_view, 6> UP_AXES = {"x", "y", "z", "-x",
 
 // Turns the scene so that the axis `up`, one of UP_AXES, becomes +y. With z up, the file's y then points away
 // from the default camera, as north on a map. But for "y" the scene's own camera is dropped. The directional
-// light stays where it is, the others turn with the scene.
+// light stays where it is, the others turn with the scene, and normals of what has no instances.
 void stand_up(Scene& scene, std::string_view up);
 
 // A point or a direction of the file, as its user knows it, in the scene, and a point of the scene in the

@@ -6,6 +6,7 @@
 #include <glm/matrix.hpp>
 
 #include "scene/bounds.h"
+#include "scene/corner_attributes.h"
 #include "scene/input_error.h"
 #include "scene/obj_offset.h"
 #include "scene/scene_source.h"
@@ -180,6 +181,8 @@ void Composer::add(const ScenePart& part, const glm::dmat4& place) {
     scene_.indices.push_back(static_cast<std::uint32_t>(first) +
                              (is_mirrored ? glm::uvec3(t.x, t.z, t.y) : t));
   }
+  const bool stands_still = !(moves_[part.node] || scene.motion || part.deformation);
+  append_corner_attributes(scene, 0, scene.indices.size(), {place, is_mirrored, stands_still}, scene_);
   const auto first_material = static_cast<std::uint32_t>(scene_.materials.size());
   for (const std::uint32_t index : scene.material_index)
     scene_.material_index.push_back(first_material + index);

@@ -38,8 +38,8 @@ struct Composition {
 };
 
 // One scene of all parts. What stands still keeps its place within float; what moves has a joint a node or as
-// many as its part has. There is a motion if anything moves. Throws InputError where there are more
-// triangles or joints than a scene can have; the message is without a file.
+// many as its part has, and no normals. There is a motion if anything moves. Throws InputError where there
+// are more triangles or joints than a scene can have; the message is without a file.
 Scene compose(Composition composition);
 
 // Meshes, once each, and where they are placed.

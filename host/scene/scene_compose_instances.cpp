@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "scene/bounds.h"
+#include "scene/corner_attributes.h"
 #include "scene/input_error.h"
 #include "scene/instance_rig.h"
 #include "scene/instances.h"
@@ -65,6 +66,7 @@ void InstanceComposer::add_mesh(const Scene& mesh) {
   if (mesh.motion) duration_ = std::max(duration_, mesh.motion->duration_seconds);
   scene_.positions.insert(scene_.positions.end(), mesh.positions.begin(), mesh.positions.end());
   for (const glm::uvec3& corners : mesh.indices) scene_.indices.push_back(corners + vertex);
+  append_corner_attributes(mesh, 0, mesh.indices.size(), {}, scene_);
   for (const std::uint32_t index : mesh.material_index) scene_.material_index.push_back(material + index);
   scene_.materials.insert(scene_.materials.end(), mesh.materials.begin(), mesh.materials.end());
 }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scene/bounds.h"
+#include "scene/corner_attributes.h"
 #include "scene/json_check.h"
 #include "scene/scene_compose.h"
 #include "scene/scene_file_tracks.h"
@@ -50,6 +51,7 @@ void add_deformation(Scene& mesh, const Deformation& deformation) {
   motion.deformations.push_back(deformation);
   mesh.positions = positions_at(motion, 0);
   mesh.motion = std::make_shared<Motion>(std::move(motion));
+  drop_normals(mesh);
 }
 
 }  // namespace coppice

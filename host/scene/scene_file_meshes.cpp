@@ -4,6 +4,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "scene/corner_attributes.h"
 #include "scene/input_error.h"
 #include "scene/json_check.h"
 #include "scene/motion.h"
@@ -183,6 +184,7 @@ class MeshOpener {
     motion.sequences.push_back(std::move(sequence));
     scene.positions = positions_at(motion, 0);
     scene.motion = std::make_shared<Motion>(std::move(motion));
+    drop_normals(scene);
     return scene;
   }
 
@@ -236,6 +238,7 @@ Scene make_anim_scene(const std::string& bytes, const std::string& name, Scene f
   motion.duration_seconds = static_cast<double>(frames) / sequence.frames_per_second;
   motion.sequences.push_back(std::move(sequence));
   faces.motion = std::make_shared<Motion>(std::move(motion));
+  drop_normals(faces);
   return faces;
 }
 

@@ -1,5 +1,7 @@
 #include "fuzz/obj_input.h"
 
+#include <algorithm>
+#include <cstring>
 #include <optional>
 
 #include "fuzz/scene_complaint.h"
@@ -32,6 +34,13 @@ std::string difference(const Outcome& a, const Outcome& b) {
   if (!is_same(a.scene.positions, b.scene.positions)) return "positions";
   if (a.scene.indices != b.scene.indices) return "triangles";
   if (a.scene.material_index != b.scene.material_index) return "material indices";
+  if (a.scene.texcoord_index != b.scene.texcoord_index || a.scene.normal_index != b.scene.normal_index)
+    return "corner attributes";
+  if (!is_same(a.scene.normals, b.scene.normals)) return "normals";
+  if (!std::ranges::equal(a.scene.texcoords, b.scene.texcoords,
+                          [](glm::vec2 x, glm::vec2 y) { return std::memcmp(&x, &y, sizeof x) == 0; })) {
+    return "texture coordinates";
+  }
   if (a.scene.materials != b.scene.materials) return "materials";
   if (a.scene.warnings != b.scene.warnings) return "warnings";
   return "";

@@ -54,6 +54,14 @@ std::string complaint_about_motion(std::span<const glm::vec3> positions, const M
   return "";
 }
 
+bool are_in_range(const std::vector<glm::uvec3>& index, std::size_t triangles, std::size_t count) {
+  if (index.empty()) return count == 0;
+  return index.size() == triangles && std::ranges::all_of(index, [&](const glm::uvec3& corners) {
+           const auto is_sound = [&](std::uint32_t i) { return i < count || i == NO_ATTRIBUTE; };
+           return is_sound(corners.x) && is_sound(corners.y) && is_sound(corners.z);
+         });
+}
+
 std::string complaint_about_mesh(const Scene& scene, const InstancedMesh& mesh) {
   if (std::uint64_t{mesh.first_triangle} + mesh.triangle_count > scene.indices.size()) return "mesh";
   if (!mesh.motion) return "";
@@ -117,6 +125,10 @@ std::string complaint_about(const Scene& scene) {
   if (scene.material_index.size() != scene.indices.size()) return "count of material indices";
   for (const std::uint32_t index : scene.material_index) {
     if (index >= scene.materials.size()) return "material index";
+  }
+  if (!are_in_range(scene.texcoord_index, scene.indices.size(), scene.texcoords.size()) ||
+      !are_in_range(scene.normal_index, scene.indices.size(), scene.normals.size())) {
+    return "corner attribute";
   }
   if (scene.materials.empty()) return "no material";
   for (const Material& material : scene.materials) {
