@@ -28,6 +28,21 @@ std::optional<FoundMtl> MtlFolder::find(const std::string& name, MtlMatch match)
   return std::nullopt;
 }
 
+std::optional<std::filesystem::path> MtlFolder::locate(const std::string& name) {
+  if (name.empty() || name.find('\0') != name.npos) return std::nullopt;
+  std::string slashes = name;
+  std::replace(slashes.begin(), slashes.end(), '\\', '/');
+  const std::filesystem::path path = slashes;
+  for (const std::filesystem::path& tried : {std::filesystem::path(name), path, path.filename()}) {
+    std::error_code error;
+    if (!tried.empty() && std::filesystem::is_regular_file(folder_ / tried, error)) return folder_ / tried;
+  }
+  for (const std::filesystem::path& tried : {path, path.filename()}) {
+    if (const auto other = find_in_any_case(tried)) return folder_ / *other;
+  }
+  return std::nullopt;
+}
+
 std::optional<std::filesystem::path> MtlFolder::find_in_any_case(const std::filesystem::path& relative) {
   std::vector<std::filesystem::path> found = {{}};  // all that the steps so far may mean
   for (const std::filesystem::path& step : relative) {

@@ -30,6 +30,9 @@ class MtlFolder {
   explicit MtlFolder(std::filesystem::path folder) : folder_(std::move(folder)) {}
   std::optional<FoundMtl> find(const std::string& name, MtlMatch match);
 
+  // The path of a regular file of any kind and size, as written, else near.
+  std::optional<std::filesystem::path> locate(const std::string& name);
+
  private:
   std::optional<std::filesystem::path> find_in_any_case(const std::filesystem::path& relative);
   const std::vector<std::filesystem::path>& list(const std::filesystem::path& folder);

@@ -25,6 +25,7 @@ namespace coppice {
 using uint = std::uint32_t;
 using glm::uvec2;
 using glm::uvec3;
+using glm::vec2;
 using glm::vec3;
 
 template <class T>
