@@ -28,7 +28,7 @@ inline constexpr std::array MATERIAL_MAPS = std::to_array<MaterialMap>({
 inline void lead_maps_from(Material& material, const std::filesystem::path& folder) {
   for (const MaterialMap& kind : MATERIAL_MAPS) {
     TextureMap& map = material.*kind.map;
-    if (map && !map.bytes) map.folder = (folder / map.folder).string();
+    if (map && !map.bytes) map.folder = map.folder.empty() ? folder.string() : (folder / map.folder).string();
   }
 }
 

@@ -131,7 +131,8 @@ float twice_texcoord_area(const CornerAttributes& corners) {
   };
   const vec2 b = edge(corners.texcoord_b), c = edge(corners.texcoord_c);
   const float first = b.x * c.y, second = b.y * c.x;
-  return std::fabs(first - second);
+  const float area = std::fabs(first - second);
+  return std::isfinite(area) ? area : INFINITY;
 }
 
 float twice_area(const Triangle& triangle) {
@@ -141,6 +142,7 @@ float twice_area(const Triangle& triangle) {
     return result;
   };
   const vec3 across = cross_product(edge(triangle.b), edge(triangle.c));
+  if (!std::isfinite(across.x) || !std::isfinite(across.y) || !std::isfinite(across.z)) return INFINITY;
   const float largest = std::fmax(std::fmax(std::fabs(across.x), std::fabs(across.y)), std::fabs(across.z));
   if (!(largest >= 7.888609e-31f)) return 0;
   const vec3 scaled(across.x / largest, across.y / largest, across.z / largest);

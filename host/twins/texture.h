@@ -22,7 +22,8 @@ glm::vec4 texture_colour(const Address<const TextureHeader>& headers, const Addr
 // positive, denormal or NaN, and 128 for infinity.
 float log2_by_bits(float x);
 
-// |b.x c.y - b.y c.x| of the edges from a, in which components below 2^-60 are 0.
+// |b.x c.y - b.y c.x| of the edges from a, in which components below 2^-60 are 0. Infinity, as of triangles,
+// where that is not finite.
 float twice_texcoord_area(const CornerAttributes& corners);
 
 // The length of the cross product of such edges, its components divided by the largest, which is multiplied

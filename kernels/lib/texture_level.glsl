@@ -21,21 +21,25 @@ float log2_by_bits(float x) {
 // Without what is so small that a product of two could be denormal.
 float without_small(float x) { return (floatBitsToUint(x) & 0x7fffffffu) < 0x21800000u ? 0.0 : x; }
 
+bool is_number(float x) { return (floatBitsToUint(x) & 0x7fffffffu) < 0x7f800000u; }
+float infinite_or(float x) { return is_number(x) ? x : uintBitsToFloat(0x7f800000u); }
+
 // Twice the area that a triangle takes of the plane of texture coordinates.
 float twice_texcoord_area(CornerAttributes corners) {
   precise vec2 b = corners.texcoord_b - corners.texcoord_a, c = corners.texcoord_c - corners.texcoord_a;
   b = vec2(without_small(b.x), without_small(b.y));
   c = vec2(without_small(c.x), without_small(c.y));
   precise float area = b.x * c.y - b.y * c.x;
-  return abs(area);
+  return infinite_or(abs(area));
 }
 
-// Twice the area of a triangle; 0 below 2^-100.
+// Twice the area of a triangle; 0 below 2^-100. Infinity, as of texture coordinates, where it is no number.
 float twice_area(Triangle triangle) {
   precise vec3 b = triangle.b - triangle.a, c = triangle.c - triangle.a;
   b = vec3(without_small(b.x), without_small(b.y), without_small(b.z));
   c = vec3(without_small(c.x), without_small(c.y), without_small(c.z));
   vec3 across = exact_cross(b, c), size = abs(across);
+  if (!is_number(across.x) || !is_number(across.y) || !is_number(across.z)) return uintBitsToFloat(0x7f800000u);
   float largest = max(max(size.x, size.y), size.z);
   if (!(largest >= 7.888609e-31)) return 0.0;
   precise vec3 scaled = across / largest;
