@@ -140,43 +140,44 @@ class PlainReader {
 
   // i, i/j, i//k or i/j/k.
   bool read_corner() {
-    const std::optional<std::int32_t> index = read_index();
-    if (!index) return false;
+    const std::int32_t index = read_index();
+    if (index == 0) return false;
     std::int32_t texcoord = 0, normal = 0;
     if (at_ != end_ && *at_ == '/') {
+      has_attributes_ = true;
       ++at_;
       if (!read_attribute_index(texcoord)) return false;
       if (at_ != end_ && *at_ == '/' && (++at_, !read_attribute_index(normal))) return false;
     }
     if (!(at_line_end() || is_blank(*at_))) return false;
-    const std::size_t corner = part_.corners.size();
-    part_.corner_texcoords.add(corner, texcoord, part_.texcoords.size());
-    part_.corner_normals.add(corner, normal, part_.normals.size());
-    part_.note_index(*index, part_.line_count);
-    part_.add_corner(*index, part_.positions.size());
+    if (has_attributes_) {
+      const std::size_t corner = part_.corners.size();
+      part_.corner_texcoords.add(corner, texcoord, part_.texcoords.size());
+      part_.corner_normals.add(corner, normal, part_.normals.size());
+    }
+    part_.note_index(index, part_.line_count);
+    part_.add_corner(index, part_.positions.size());
     return true;
   }
 
-  // Nothing for what is no number, is 0, or may not fit.
-  std::optional<std::int32_t> read_index() {
+  // 0 for what is no number, is 0, or may not fit.
+  std::int32_t read_index() {
     const bool is_negative = at_ != end_ && *at_ == '-';
     if (is_negative) ++at_;
     const char* const digits = at_;
     std::int32_t index = 0;
     for (; at_ != end_ && is_digit(*at_); ++at_) {
-      if (at_ - digits == 9) return std::nullopt;
+      if (at_ - digits == 9) return 0;
       index = index * 10 + (*at_ - '0');
     }
-    if (index == 0) return std::nullopt;
     return is_negative ? -index : index;
   }
 
   // Behind a slash; 0 where nothing stands there.
   bool read_attribute_index(std::int32_t& index) {
     if (at_line_end() || is_blank(*at_) || *at_ == '/') return true;
-    const std::optional<std::int32_t> read = read_index();
-    if (read) index = *read;
-    return read.has_value();
+    index = read_index();
+    return index != 0;
   }
 
   void skip_blanks() {
@@ -215,6 +216,7 @@ class PlainReader {
   const char* const end_;
   const glm::dvec3 offset_;
   ObjPart& part_;
+  bool has_attributes_ = false;  // any corner so far may have some
 };
 
 // Whether there is no zero byte, and no CR but before an LF.

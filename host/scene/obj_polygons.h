@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "scene/obj_part.h"
@@ -12,7 +14,12 @@ namespace coppice {
 // Cuts a part's polygons into the mesh's triangles, which keep what the corners have.
 class PolygonCutter {
  public:
-  PolygonCutter(const ObjPart& part, ObjMesh& mesh) : part_(part), mesh_(mesh) {}
+  PolygonCutter(const ObjPart& part, ObjMesh& mesh)
+      : part_(part),
+        mesh_(mesh),
+        has_attributes_(!part.corner_texcoords.of_corner.empty() || !part.corner_normals.of_corner.empty()) {}
+
+  bool has_attributes() const { return has_attributes_; }
 
   // Of the corners from the first on, those of the triangle.
   void set_attributes(std::size_t triangle, std::size_t first, glm::uvec3 corners) {
@@ -21,18 +28,23 @@ class PolygonCutter {
   }
 
   bool cut(std::size_t begin, std::size_t end, std::size_t triangle) {
+    cut_.clear();
+    const std::span<const std::uint32_t> corners(part_.corners.data() + begin, end - begin);
+    if (!has_attributes_) {
+      const bool is_whole = triangulate(mesh_.positions, corners, cut_);
+      std::copy(cut_.begin(), cut_.end(), mesh_.triangles.begin() + static_cast<std::ptrdiff_t>(triangle));
+      return is_whole;
+    }
     // The cut depends on the places alone, so it is the same of the corners' numbers in the polygon.
     places_.clear();
     numbers_.clear();
-    cut_.clear();
-    for (std::size_t i = begin; i < end; ++i) {
-      numbers_.push_back(static_cast<std::uint32_t>(i - begin));
-      places_.push_back(mesh_.positions[part_.corners[i]]);
+    for (std::uint32_t i = 0; i < corners.size(); ++i) {
+      numbers_.push_back(i);
+      places_.push_back(mesh_.positions[corners[i]]);
     }
     const bool is_whole = triangulate(places_, numbers_, cut_);
     for (const glm::uvec3& t : cut_) {
-      const auto vertex = [&](std::uint32_t corner) { return part_.corners[begin + corner]; };
-      mesh_.triangles[triangle] = {vertex(t.x), vertex(t.y), vertex(t.z)};
+      mesh_.triangles[triangle] = {corners[t.x], corners[t.y], corners[t.z]};
       set_attributes(triangle++, begin, t);
     }
     return is_whole;
@@ -48,6 +60,7 @@ class PolygonCutter {
 
   const ObjPart& part_;
   ObjMesh& mesh_;
+  const bool has_attributes_;
   std::vector<glm::vec3> places_;  // these three are reused
   std::vector<std::uint32_t> numbers_;
   std::vector<glm::uvec3> cut_;

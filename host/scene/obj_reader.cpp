@@ -222,7 +222,8 @@ class Joining {
       digest.add(place.faces + face, {corners, end - begin});
       if (end - begin == 3) {
         mesh_.triangles[triangle] = {corners[0], corners[1], corners[2]};
-        cutter.set_attributes(triangle++, begin, {0, 1, 2});
+        if (cutter.has_attributes()) cutter.set_attributes(triangle, begin, {0, 1, 2});
+        ++triangle;
       } else {
         if (!cutter.cut(begin, end, triangle)) crossing.add(part.polygon_lines[polygon]);
         ++polygon;
