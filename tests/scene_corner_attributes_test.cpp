@@ -53,7 +53,8 @@ TEST(CornerAttributes, PolygonsKeepThoseOfTheirCorners) {
 // A corner that a polygon has twice keeps both.
 TEST(CornerAttributes, ConcavePolygonsThatTouchThemselves) {
   const Scene scene = read_obj(
-      "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 1 1 0\nv 1 3 0\nv 3 3 0\nvt 0 0\nvt 1 0\nvt 2 0\nvt 3 0\nvt 4 0\n"
+      "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 1 1 0\nv 1 3 0\nv 3 3 0\nvt 0 0\nvt 1 0\nvt 2 0\nvt 3 0\nvt 4 "
+      "0\n"
       "vt 5 0\nvt 6 0\nvt 7 0\nvt 8 0\nf 1/1 2/2 3/3 4/4 1/5 5/6 6/7 7/8 5/9\n");
   const std::uint32_t vertices[] = {0, 1, 2, 3, 0, 4, 5, 6, 4};
   ASSERT_EQ(scene.indices.size(), 7u);
