@@ -10,7 +10,7 @@ lavapipe_dir=$build_dir/lavapipe
 build_packages=(
   g++ cmake ninja-build glslang-tools spirv-tools libvulkan-dev libglm-dev libglfw3-dev
   libimgui-dev libtinyobjloader-dev libtinygltf-dev libvalijson-dev libcli11-dev nlohmann-json3-dev libstb-dev
-  libtbb-dev libgmp-dev mesa-vulkan-drivers xz-utils
+  libtbb-dev libgmp-dev libopenexr-dev mesa-vulkan-drivers xz-utils
 )
 test_packages=(
   libgtest-dev libgmock-dev libbenchmark-dev vulkan-validationlayers clang-format libembree-dev

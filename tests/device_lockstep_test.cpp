@@ -136,7 +136,7 @@ TEST_F(Lockstep, WholeFrame) {
 }
 
 // The pixels of so much radiance, in lockstep.
-std::vector<uint> resolved(const std::vector<vec3>& radiance) {
+std::vector<uint> resolved(const std::vector<vec3>& radiance, const ToneMapping& tone = {}) {
   const auto count = static_cast<std::uint32_t>(radiance.size());
   Layout layout(test_device().properties().max_block_bytes);
   TraceOptions options = test_trace_options(count, 1);
@@ -151,8 +151,8 @@ std::vector<uint> resolved(const std::vector<vec3>& radiance) {
   const auto difference = executor.run([&](Chain& chain) {
     chain.run(stages::resolve,
               {chain.at(trace.film), chain.at(trace.radiance), chain.at(trace.srgb_thresholds),
-               chain.at(trace.image), 0, count},
-              groups_of(count, RESOLVE_GROUP));
+               chain.at(trace.image), 0, count, std::bit_cast<uint>(tone.exposure()), tone.curve},
+              groups_of(count, RESOLVE_GROUP), {tone.curve, tone.exposure() != 1});
   });
   EXPECT_FALSE(difference) << "pixel " << difference->index << "\ncpu " << difference->cpu << "\ngpu "
                            << difference->gpu;
@@ -179,6 +179,25 @@ TEST_F(Lockstep, EveryCodeOfAColour) {
   for (int i = 0; i < 20000; ++i) radiance.push_back(vec3(static_cast<float>(i) / 20000.0f));
   const std::vector<uint> pixels = resolved(radiance);
   for (uint code = 1; code < 256; ++code) EXPECT_EQ(pixels[code - 1] & 0xffffff, code * 0x10101 - 1) << code;
+}
+
+// Every tone curve, exposed or not, from dark to bright, of colours and of what is none.
+TEST_F(Lockstep, EveryToneCurve) {
+  const float infinity = std::numeric_limits<float>::infinity();
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  std::vector<vec3> radiance = {{nan, -1, 1}, {infinity, 1, 0}, {-infinity, 3e38f, 1e-38f}, {0, 0, 0}};
+  for (int i = 0; i < 4000; ++i) {
+    const float x = std::ldexp(1 + static_cast<float>(i % 100) / 100, i / 100 - 20);
+    radiance.push_back(vec3(x));
+    radiance.push_back({x, 0.3f, 1 / x});
+  }
+  std::vector<std::vector<uint>> pictures;
+  for (const uint curve : {TONE_NONE, TONE_REINHARD, TONE_ACES}) {
+    for (const double stops : {0.0, 2.5}) pictures.push_back(resolved(radiance, {curve, stops}));
+  }
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) EXPECT_NE(pictures[i], pictures[k]) << i << ", " << k;
+  }
 }
 
 // --- Planted faults.

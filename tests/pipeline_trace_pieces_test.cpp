@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <functional>
 #include <optional>
@@ -21,10 +22,13 @@ namespace {
 struct Traced {
   std::vector<uint> image;
   std::vector<uint> counters;
+  std::vector<vec3> radiance;
   std::uint64_t work = 0;
   int pieces = 0;
 
-  bool same_bits(const Traced& other) const { return image == other.image && counters == other.counters; }
+  bool same_bits(const Traced& other) const {
+    return image == other.image && counters == other.counters && radiance == other.radiance;
+  }
 };
 
 // A scene with its tree, traced by pieces of the work that `next_work` says.
@@ -69,6 +73,7 @@ class CutTrace {
     }
     EXPECT_EQ(traced.work, pieces.work());
     traced.image = executor.read(plan.image);
+    if (options_.keep_radiance) traced.radiance = executor.read(plan.radiance);
     const TraceCounters counters = executor.read(plan.counters)[0];
     traced.counters.resize(sizeof counters / sizeof(uint));
     std::memcpy(traced.counters.data(), &counters, sizeof counters);
@@ -140,6 +145,42 @@ TEST(TracePieces, OfAPictureOfMoreThanOneBand) {
   const Traced whole = trace.whole();
   std::mt19937 random(2);
   EXPECT_TRUE(trace.run([&] { return 1 + random() % 600000; }).same_bits(whole));
+}
+
+// Over two bands, the second a part of one.
+TEST(TracePieces, RadianceOfTheWholePictureIsThatOfItsPixels) {
+  TraceOptions options = options_of(1027, 1030, 2);
+  const Traced plain = CutTrace(300, options).whole();
+  options.keep_radiance = true;
+  const Traced kept = CutTrace(300, options).whole();
+  EXPECT_EQ(kept.image, plain.image);
+  EXPECT_EQ(kept.counters, plain.counters);
+  const std::vector<vec3> means = mean_radiance(kept.radiance, 1027, 1030, 2);
+  ASSERT_EQ(means.size(), kept.image.size());
+  const auto thresholds = srgb_thresholds();
+  std::size_t differing = 0;
+  for (std::size_t i = 0; i < means.size(); ++i) {
+    for (int channel = 0; channel < 3; ++channel) {
+      const uint code = kept.image[i] >> (8 * channel) & 255;
+      const float x = means[i][channel];
+      const bool fits = x >= std::bit_cast<float>(thresholds[code]) &&
+                        (code == 255 || x < std::bit_cast<float>(thresholds[code + 1]));
+      differing += !fits;
+    }
+  }
+  EXPECT_EQ(differing, 0u);
+}
+
+TEST(TracePieces, WithoutAskingForItNoRadianceIsKept) {
+  Layout layout;
+  const TreeSlots tree = plan_tree(layout, 100, 199);
+  TraceOptions options = options_of(640, 480, 1);
+  EXPECT_EQ(plan_trace(layout, tree, 1, options).radiance.count, 0u);
+  options.samples = 2;
+  options.width = options.height = 2048;
+  EXPECT_EQ(plan_trace(layout, tree, 1, options).radiance.count, 1u << 20);
+  options.keep_radiance = true;
+  EXPECT_EQ(plan_trace(layout, tree, 1, options).radiance.count, 1u << 22);
 }
 
 // Pieces do not grow with the samples: neither do the memory nor the time of one.

@@ -10,6 +10,7 @@
 #include "measure/table.h"
 #include "pipeline/interruption.h"
 #include "scene/input_error.h"
+#include "scene/write_exr.h"
 #include "scene/write_file.h"
 #include "scene/write_png.h"
 
@@ -28,11 +29,13 @@ class RenderCommand : public Command {
   RenderCommand() { files.picture = "coppice.png"; }
 
   void add_options(CLI::App& app) override {
-    app.add_option("-o,--output", files.picture)->capture_default_str();
+    app.add_option("-o,--output", files.picture, "the picture: .png, or .exr for linear radiance")
+        ->capture_default_str();
     app.add_option("--tracer", tracer_)->check(CLI::IsMember({"gpu", "cpu"}))->capture_default_str();
     app.add_flag("--kernels", kernels_, "print the time of every kernel; takes the frame once more");
     add_picture(app, picture_, scene_.up);
     add_effects(app, scene_.effects);
+    add_tone(app, picture_.trace.tone);
     app.add_flag("--explain", explain_, "say of each effect whether it is on, and what called for it");
     add_show(app, show_);
     add_intersection(app, picture_.trace);
@@ -47,6 +50,7 @@ class RenderCommand : public Command {
     parse_view(picture_);
     const bool builds = builder_.on_device(), traces = traces_on_device(), either = builds || traces;
     check_show(app);
+    picture_.trace.keep_radiance = is_exr(files.picture);
     check_options_matter(app, {{"--trace-events", either, NEEDS_DEVICE},
                                {"--validate", either, NEEDS_DEVICE},
                                {"--variants", either, NEEDS_DEVICE},
@@ -70,6 +74,10 @@ class RenderCommand : public Command {
          "--builder gpu-ploc and --tracer gpu");
     need(show != Show::instances || traces_instances(),
          "--tracer gpu, a builder on the device and a binary tree");
+    need(show == Show::color || !is_exr(files.picture), "a PNG: radiance, which an EXR holds, is of colours");
+    const bool maps = show == Show::color && !is_exr(files.picture);
+    constexpr const char* needs_pixels = "--show color and a PNG: an EXR holds radiance as it is";
+    check_options_matter(app, {{"--tonemap", maps, needs_pixels}, {"--exposure", maps, needs_pixels}});
     check_options_matter(app, {{"--most-steps", show == Show::steps, "--show steps"},
                                {"--round", show == Show::clusters, "--show clusters"},
                                {"--level", show == Show::boxes, "--show boxes"}});
@@ -104,7 +112,10 @@ class RenderCommand : public Command {
 
     const InterruptionGuard guard;  // no half-written file
     const auto write_start = Clock::now();
-    write_png(files.picture, frame.trace.width, frame.trace.height, report.image);
+    if (frame.trace.keep_radiance)
+      write_exr(files.picture, frame.trace.width, frame.trace.height, report.radiance);
+    else
+      write_png(files.picture, frame.trace.width, frame.trace.height, report.image);
     around.write_ms = ms_since(write_start);
     if (files.talks()) print(text_of(report, scene, frame, around));
     write_json(files.json, to_json(report, scene, frame, around));

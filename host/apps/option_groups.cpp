@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <map>
 
 #include "builders/registry.h"
@@ -63,6 +64,9 @@ constexpr Word<std::uint32_t> triangle_test_words[] = {
     {"auto", TRIANGLE_WATERTIGHT}, {"fast", TRIANGLE_FAST}, {"watertight", TRIANGLE_WATERTIGHT}};
 constexpr Word<std::uint32_t> box_test_words[] = {
     {"auto", BOX_ROBUST}, {"fast", BOX_FAST}, {"robust", BOX_ROBUST}};
+constexpr Word<std::uint32_t> tone_curve_words[] = {{TONE_CURVE_NAMES[TONE_NONE], TONE_NONE},
+                                                    {TONE_CURVE_NAMES[TONE_REINHARD], TONE_REINHARD},
+                                                    {TONE_CURVE_NAMES[TONE_ACES], TONE_ACES}};
 
 template <class T, std::size_t N>
 std::string word_of(const Word<T> (&words)[N], T value) {
@@ -219,6 +223,22 @@ void add_picture(CLI::App& app, PictureOptions& picture, std::string& up) {
   app.add_option("--spp", picture.trace.samples, "samples per pixel")
       ->check(CLI::Range(1u, 65536u))
       ->capture_default_str();
+}
+
+void add_tone(CLI::App& app, ToneMapping& tone) {
+  add_words(app, "--tonemap", tone.curve, tone_curve_words,
+            "what bright colours become; none: beyond 1 they are cut off");
+  app.add_option("--exposure", tone.stops, "of colours, before: they are multiplied by 2 to this power")
+      ->type_name("STOPS")
+      ->check([](const std::string& text) {
+        double stops = 0;
+        const char* const first = text.data() + text.starts_with('+');
+        const auto [end, error] = std::from_chars(first, text.data() + text.size(), stops);
+        const bool parsed = error == std::errc() && end == text.data() + text.size();
+        return parsed && std::abs(stops) <= 64 ? std::string()
+                                               : "'" + text + "' is no number between -64 and 64";
+      })
+      ->default_str("0");
 }
 
 void add_effects(CLI::App& app, EffectChanges& effects) {

@@ -43,6 +43,7 @@ void add_intersection(CLI::App& app, TraceOptions& trace);
 void add_size(CLI::App& app, PictureOptions& picture);
 void add_view(CLI::App& app, PictureOptions& picture, std::string& up);     // size and camera
 void add_picture(CLI::App& app, PictureOptions& picture, std::string& up);  // view and samples
+void add_tone(CLI::App& app, ToneMapping& tone);                            // and exposure
 void add_effects(CLI::App& app, EffectChanges& effects);
 void add_show(CLI::App& app, ShowOptions& show);
 void add_update(CLI::App& app, Update& update);

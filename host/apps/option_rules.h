@@ -34,4 +34,7 @@ void check_options_matter(const CLI::App& app, std::initializer_list<OptionRule>
 // "-". Throws CLI::ValidationError with one line that names the option or both.
 void check_outputs(const CLI::App& app, const OutputOptions& files, const std::vector<std::string>& scenes);
 
+// Whether a picture of that name is one of linear radiance.
+bool is_exr(const std::string& file);
+
 }  // namespace coppice

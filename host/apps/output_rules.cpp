@@ -18,15 +18,19 @@ struct Output {
   const char* option;
   const char* said;  // in messages
   std::string OutputOptions::*file;
-  const char* ending;  // what the file's name may end in; null: anything
+  std::vector<std::string> endings;  // what the file's name may end in; none: anything
 };
 
-constexpr Output outputs[] = {{"--output", "-o (--output)", &OutputOptions::picture, ".png"},
-                              {"--json", "--json", &OutputOptions::json, nullptr},
-                              {"--trace-events", "--trace-events", &OutputOptions::trace_events, nullptr},
-                              {"--markdown", "--markdown", &OutputOptions::markdown, nullptr},
-                              {"--plot", "--plot", &OutputOptions::plot, ".svg"},
-                              {"--csv", "--csv", &OutputOptions::csv, nullptr}};
+const std::vector<Output>& all_outputs() {
+  static const std::vector<Output> outputs = {
+      {"--output", "-o (--output)", &OutputOptions::picture, {".png", ".exr"}},
+      {"--json", "--json", &OutputOptions::json, {}},
+      {"--trace-events", "--trace-events", &OutputOptions::trace_events, {}},
+      {"--markdown", "--markdown", &OutputOptions::markdown, {}},
+      {"--plot", "--plot", &OutputOptions::plot, {".svg"}},
+      {"--csv", "--csv", &OutputOptions::csv, {}}};
+  return outputs;
+}
 
 // What there is at the end of links, the last of which may point to nothing yet.
 fs::path without_links(fs::path path) {
@@ -71,11 +75,14 @@ void check_name(const Output& output, const fs::path& path) {
     throw CLI::ValidationError(option +
                                ": '-' is no file; only --json writes to stdout (./- is a file of that name)");
   }
-  if (!output.ending || !path.has_extension() || lower(path.extension()) == output.ending) return;
+  if (output.endings.empty() || !path.has_extension()) return;
+  if (std::ranges::count(output.endings, lower(path.extension())) > 0) return;
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (fs::exists(status) && !fs::is_regular_file(status)) return;  // a device or a pipe has whatever name
-  throw CLI::ValidationError(option + ": '" + printable(path) + "' does not end in " + output.ending +
+  std::string endings = output.endings[0];
+  for (std::size_t i = 1; i < output.endings.size(); ++i) endings += " or " + output.endings[i];
+  throw CLI::ValidationError(option + ": '" + printable(path) + "' does not end in " + endings +
                              ", and no other format is written");
 }
 
@@ -88,9 +95,11 @@ void check_is_no_scene(const Output& output, const fs::path& path, const fs::pat
 
 }  // namespace
 
+bool is_exr(const std::string& file) { return lower(fs::path(file).extension()) == ".exr"; }
+
 void check_outputs(const CLI::App& app, const OutputOptions& files, const std::vector<std::string>& scenes) {
   std::vector<const Output*> used;
-  for (const Output& output : outputs) {
+  for (const Output& output : all_outputs()) {
     const CLI::Option* const option = app.get_option_no_throw(output.option);
     const std::string& file = files.*output.file;
     if (!option || (option->count() == 0 && file.empty())) continue;

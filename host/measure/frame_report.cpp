@@ -43,6 +43,8 @@ Json to_json(const FrameReport& report, const Scene& scene, const FrameRuns& fra
                {"width", frame.trace.width},
                {"height", frame.trace.height},
                {"spp", frame.trace.samples},
+               {"tonemap", TONE_CURVE_NAMES[frame.trace.tone.curve]},
+               {"exposure", frame.trace.tone.stops},
                {"offset", coordinates(scene.offset)},
                {"camera", camera_of(scene, frame)},
                {"tracer", around.tracer},

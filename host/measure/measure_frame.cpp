@@ -158,6 +158,9 @@ void upload_shown(GpuExecutor& executor, const FramePlan& plan, const SceneArray
 // The picture, and what was seen in it.
 void read_picture(const GpuExecutor& executor, const FramePlan& plan, const Film& film, FrameReport& report) {
   report.image = executor.read(plan.trace.image);
+  if (plan.trace.options.keep_radiance)
+    report.radiance =
+        mean_radiance(executor.read(plan.trace.radiance), film.width, film.height, film.samples);
   const ShowOptions& show = report.shown.options;
   if (plan.trace.show.range.count > 0)
     report.shown.seen = seen_in(executor.read(plan.trace.show.range)[0], show.show);

@@ -40,8 +40,9 @@ struct FrameReport {
   TraceCounts shadow;                           // of shadow rays
   std::string trace_device;                     // name and driver
   bool walks_wide = false;
-  KernelTable kernels;      // of the trace, on a device
-  std::vector<uint> image;  // RGBA8
+  KernelTable kernels;         // of the trace, on a device
+  std::vector<uint> image;     // RGBA8
+  std::vector<vec3> radiance;  // linear, a mean a pixel, rows top to bottom; if it was asked for
   ShownReport shown;
 };
 

@@ -113,6 +113,9 @@ FrameReport measure_host_frame(CheckedDevice* device, const Scene& scene, const 
                                                        {bvh.nodes, {}})));
   trace_on_host(executor, plan.tree, plan.trace, bvh, arrays.triangles, report);
   report.image = executor.read(plan.trace.image);
+  if (plan.trace.options.keep_radiance)
+    report.radiance =
+        mean_radiance(executor.read(plan.trace.radiance), film.width, film.height, film.samples);
   if (plan.trace.show.range.count > 0)
     report.shown.seen = seen_in(executor.read(plan.trace.show.range)[0], frame.show.show);
   if (frame.show.show == Show::boxes)

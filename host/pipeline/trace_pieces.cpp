@@ -1,6 +1,7 @@
 #include "pipeline/trace_pieces.h"
 
 #include <algorithm>
+#include <bit>
 
 #include "stages/stages.h"
 
@@ -151,7 +152,8 @@ void TracePieces::append_pixels(Chain& chain) const {
 }
 
 void TracePieces::append_radiance(Chain& chain) const {
-  const auto radiance = chain.at(plan_.radiance, range_.first);
+  const auto radiance =
+      chain.at(plan_.radiance, (plan_.options.keep_radiance ? band_first_ : 0) + range_.first);
   if (plan_.options.show != SHOW_COLOR) {
     append_show(chain, radiance);
   } else {
@@ -159,10 +161,11 @@ void TracePieces::append_radiance(Chain& chain) const {
     append_all_lights(chain, radiance);
   }
   if (sample_ + 1 == plan_.options.samples) {
+    const ToneMapping tone = plan_.options.show == SHOW_COLOR ? plan_.options.tone : ToneMapping{};
     chain.run(stages::resolve,
               {chain.at(plan_.film), radiance, chain.at(plan_.srgb_thresholds), chain.at(plan_.image),
-               band_first_ + range_.first, range_.count},
-              groups_of(range_.count, RESOLVE_GROUP));
+               band_first_ + range_.first, range_.count, std::bit_cast<uint>(tone.exposure()), tone.curve},
+              groups_of(range_.count, RESOLVE_GROUP), {tone.curve, tone.exposure() != 1});
   }
 }
 

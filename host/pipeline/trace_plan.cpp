@@ -89,8 +89,11 @@ ShowSlots plan_show(Layout& layout, const TreeSlots& tree, uint view) {
 
 }  // namespace
 
+float ToneMapping::exposure() const { return static_cast<float>(std::exp2(stops)); }
+
 bool keeps_radiance(const TraceOptions& options) {
-  return options.samples > 1 || options.show != SHOW_COLOR || options.lights.lights > 0;
+  return options.samples > 1 || options.show != SHOW_COLOR || options.lights.lights > 0 ||
+         options.tone.changes() || options.keep_radiance;
 }
 
 bool can_trace_wide(const TraceOptions& options) {
@@ -181,7 +184,8 @@ TracePlan plan_trace(Layout& layout, const TreeSlots& tree, std::uint32_t materi
   const std::uint32_t kept_rays = traces_pixels(options) ? 0 : plan.band_rays;
   plan.rays = layout.add<Ray>("rays", kept_rays);
   plan.hits = layout.add<Hit>("hits", kept_rays);
-  plan.radiance = layout.add<vec3>("radiance", keeps_radiance(options) ? plan.band_rays : 0);
+  const std::uint32_t kept_radiance = options.keep_radiance ? pixels : plan.band_rays;
+  plan.radiance = layout.add<vec3>("radiance", keeps_radiance(options) ? kept_radiance : 0);
   if (options.show == SHOW_COLOR) plan.lights = plan_lights(layout, options.lights, plan.band_rays);
   if (options.show != SHOW_COLOR) plan.show = plan_show(layout, tree, options.show);
   if (options.show == SHOW_STEPS) plan.ray_steps = layout.add<uint>("ray_steps", plan.band_rays);

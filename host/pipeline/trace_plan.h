@@ -11,6 +11,17 @@
 
 namespace coppice {
 
+// What is made of radiance before it becomes sRGB: see docs/effects.md#tone-mapping.
+struct ToneMapping {
+  std::uint32_t curve = TONE_NONE;
+  double stops = 0;  // of exposure: radiance is multiplied by 2 to this power
+
+  float exposure() const;
+  bool changes() const { return curve != TONE_NONE || exposure() != 1; }
+};
+
+inline constexpr const char* TONE_CURVE_NAMES[] = {"none", "reinhard", "aces"};  // by TONE_
+
 struct TraceOptions {
   std::uint32_t width = 1024, height = 768;  // pixels
   std::uint32_t samples = 1;                 // per pixel
@@ -27,13 +38,16 @@ struct TraceOptions {
   LightCounts lights{};             // of colours
   std::uint32_t show = SHOW_COLOR;  // SHOW_; brute force has no steps
   bool keep_hits = false;           // the rays of the last sample and their hits are asked for
+  ToneMapping tone{};               // of colours
+  bool keep_radiance = false;       // that of the whole picture is asked for, 12 bytes a pixel
 };
 
 // Whether the wide tree can be walked: its tracers have the watertight and the robust test only, so that the
 // order of visits does not show.
 bool can_trace_wide(const TraceOptions& options);
 
-// Whether samples or lights are added up before they are pixels, or what they see is not colour.
+// Whether samples or lights are added up before they are pixels, what they see is not colour, tones are
+// mapped, or radiance is asked for.
 bool keeps_radiance(const TraceOptions& options);
 
 // Whether each ray becomes a pixel at once (trace_pixels): of packets through the wide tree, where neither
@@ -76,7 +90,9 @@ struct TracePlan : RaySlots {
   Slot<uint> srgb_thresholds;       // in: see srgb_thresholds()
   Slot<uint> image;                 // out: RGBA8, red in the low byte, rows top to bottom
 
-  Slot<vec3> radiance;  // one a ray, in the order of FILM_STRIP; none where none is kept
+  // Summed over the samples, in the order of FILM_STRIP: one a ray of the band, or a pixel of the picture
+  // where that is asked for; none where none is kept.
+  Slot<vec3> radiance;
   LightSlots lights;
   ShowSlots show;
 };

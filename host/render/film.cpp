@@ -43,6 +43,19 @@ Film make_film(const Camera& camera, std::uint32_t width, std::uint32_t height, 
   return film_of(view_of(camera), width, height, samples);
 }
 
+std::vector<vec3> mean_radiance(std::span<const vec3> sums, std::uint32_t width, std::uint32_t height,
+                                std::uint32_t samples) {
+  std::vector<vec3> means(sums.size());
+  std::size_t ray = 0;
+  for (std::uint32_t top = 0; top < height; top += FILM_STRIP) {
+    for (std::uint32_t x = 0; x < width; ++x) {
+      for (std::uint32_t y = top; y < std::min(top + FILM_STRIP, height); ++y)
+        means[std::size_t{y} * width + x] = sums[ray++] / static_cast<float>(samples);
+    }
+  }
+  return means;
+}
+
 std::vector<Ray> rays_through(const Film& film) {
   std::vector<Ray> rays;
   for (std::uint32_t top = 0; top < film.height; top += FILM_STRIP) {

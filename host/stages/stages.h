@@ -80,7 +80,7 @@
   STAGE(show, ShowArgs, ShowConstants, nearly_radiance)                                \
   STAGE(shade_pixels, ShadePixelsArgs, ShadeConstants, nearly_image)                   \
   STAGE(trace_pixels, TracePixelsArgs, TracePixelsConstants, nearly_pixels)            \
-  STAGE(resolve, ResolveArgs, NoConstants, nearly_image)                               \
+  STAGE(resolve, ResolveArgs, ResolveConstants, nearly_image)                          \
   STAGE(copy_words, CopyWordsArgs, NoConstants, exactly)                               \
   STAGE(scan_tile_sums, ScanTileSumsArgs, NoConstants, exactly)                        \
   STAGE(prefix_scan, PrefixScanArgs, LookbackConstants, exactly)

@@ -28,6 +28,13 @@ const uint TRIANGLE_WATERTIGHT = 1;  // Woop, Benthin and Wald 2013
 const uint BOX_FAST = 0;             // slabs as they come
 const uint BOX_ROBUST = 1;           // slabs widened by the error bound, after Ize 2013
 
+// How radiance becomes what a display shows.
+const uint TONE_NONE = 0;         // as it is
+const uint TONE_REINHARD = 1;     // Reinhard et al. 2002, on luminance, with TONE_WHITE
+const uint TONE_ACES = 2;         // Hill's fit of the transforms of ACES
+const float TONE_WHITE = 4.0;     // the luminance that becomes 1
+const float TONE_MOST = 65536.0;  // what channels above it count as
+
 // A ray hits nothing with a NaN, an infinite origin or direction, an empty range (t_min > t_max), or a
 // direction whose components are all zero or denormal. Components that are denormal or below 2^-64 of the
 // largest count as 0.
@@ -291,6 +298,8 @@ struct ResolveArgs {
   UintBuffer image;                   // RGBA8, red in the low byte, rows top to bottom
   uint first_ray;
   uint ray_count;
+  uint exposure;    // the bits of a float, by which radiance is multiplied
+  uint tone_curve;  // TONE_
 };
 
 // Specialization constants; what is an argument, too, has the same value there.
@@ -324,6 +333,11 @@ struct TraceCandidatesConstants {
 
 struct TraceBruteForceConstants {
   uint triangle_test;
+};
+
+struct ResolveConstants {
+  uint tone_curve;
+  uint is_exposed;  // 0 where the exposure is 1
 };
 
 struct ShadeConstants {

@@ -1,0 +1,91 @@
+// What the program writes of a picture: linear radiance beside pixels.
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "support/command.h"
+#include "support/read_exr.h"
+#include "support/read_png.h"
+
+namespace coppice {
+namespace {
+
+// The 8-bit sRGB code of a channel (IEC 61966-2-1).
+int code_of(double linear) {
+  const double x = std::clamp(linear, 0.0, 1.0);
+  const double encoded = x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
+  return static_cast<int>(std::floor(encoded * 255 + 0.5));
+}
+
+// Of radiance, by how many codes the pixels are off at most.
+int largest_difference(const ReadExr& radiance, const ReadPng& picture) {
+  int largest = 0;
+  for (std::size_t i = 0; i < radiance.rgb.size(); ++i) {
+    for (int channel = 0; channel < 3; ++channel)
+      largest = std::max(largest, std::abs(code_of(radiance.rgb[i][channel]) -
+                                           static_cast<int>(picture.rgba8[i] >> (8 * channel) & 255)));
+  }
+  return largest;
+}
+
+TEST_F(Command, AnExrHoldsTheRadianceOfThePng) {
+  for (const char* tracer : {" --tracer gpu", " --tracer cpu", " --tree binary --builder sah"}) {
+    for (const char* samples : {"", " --spp 5"}) {
+      const std::string arguments = std::string("render terrain:500 --size 53x37") + tracer + samples;
+      const Outcome exr = run(arguments + " -o a.EXR --json e.json"),
+                    png = run(arguments + " -o a.png --json p.json");
+      ASSERT_EQ(exr.status, 0) << arguments << ": " << exr.err;
+      ASSERT_EQ(png.status, 0) << arguments << ": " << png.err;
+      const ReadExr radiance = read_exr("a.EXR");
+      EXPECT_EQ(radiance.width, 53u);
+      EXPECT_EQ(radiance.height, 37u);
+      EXPECT_EQ(largest_difference(radiance, read_png("a.png")), 0) << arguments;
+      EXPECT_EQ(nlohmann::json::parse(read("e.json"))["image_hash"],
+                nlohmann::json::parse(read("p.json"))["image_hash"]);
+    }
+  }
+}
+
+// An exposure of 3 stops is radiance times 8, cut off at 1; a tone curve leaves less of it cut off.
+TEST_F(Command, TonesAreMappedFromRadiance) {
+  const std::string arguments = "render terrain:500 --size 53x37";
+  ASSERT_EQ(run(arguments + " -o a.exr").status, 0);
+  const Outcome exposed = run(arguments + " -o exposed.png --exposure 3 --json a.json");
+  const Outcome mapped = run(arguments + " -o mapped.png --exposure +3 --tonemap aces --json b.json");
+  ASSERT_EQ(exposed.status, 0) << exposed.err;
+  ASSERT_EQ(mapped.status, 0) << mapped.err;
+  ReadExr radiance = read_exr("a.exr");
+  for (glm::vec3& colour : radiance.rgb) colour *= 8.0f;
+  const ReadPng cut_off = read_png("exposed.png"), curved = read_png("mapped.png");
+  EXPECT_EQ(largest_difference(radiance, cut_off), 0);
+  const auto white = [](const ReadPng& picture) { return std::ranges::count(picture.rgba8, 0xffffffffu); };
+  EXPECT_GT(white(cut_off), white(curved));
+  EXPECT_EQ(nlohmann::json::parse(read("a.json"))["exposure"], 3);
+  EXPECT_EQ(nlohmann::json::parse(read("b.json"))["tonemap"], "aces");
+  for (const char* given : {"nan", "inf", "65", "1e9", "x", "''", "1,2"})
+    expect_refused("render one.obj -o out.png --exposure " + std::string(given), 2, "--exposure");
+  expect_refused("render one.obj -o out.png --tonemap filmic", 2, "--tonemap");
+  expect_refused("render one.obj -o out.exr --tonemap aces", 2, "--tonemap");
+  expect_refused("render one.obj -o out.png --show depth --exposure 1", 2, "--exposure");
+}
+
+TEST_F(Command, TonesAreMappedInLockstepAndInMotion) {
+  const Outcome lockstep =
+      run("lockstep terrain:500 --size 32x24 --tonemap reinhard --exposure -1.5 --json -");
+  ASSERT_EQ(lockstep.status, 0) << lockstep.err;
+  const auto hash_with = [&](const std::string& options) {
+    const Outcome animated = run("animate moving:5000 --frames 1 --size 32x24 --json -" + options);
+    EXPECT_EQ(animated.status, 0) << animated.err;
+    return nlohmann::json::parse(animated.out)["frame_hashes"][0].get<std::string>();
+  };
+  EXPECT_NE(hash_with(" --tonemap aces"), hash_with(""));
+}
+
+TEST_F(Command, AnExrIsOfColours) {
+  expect_refused("render one.obj -o out.exr --show depth", 2, "PNG");
+  expect_refused("render one.obj -o out.hdr", 2, ".png or .exr");
+  EXPECT_FALSE(fs::exists("out.exr"));
+  expect_refused("render one.obj --size 8x8 -o none/out.exr", 1, "none/out.exr");
+}
+
+}  // namespace
+}  // namespace coppice
