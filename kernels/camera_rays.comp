@@ -1,5 +1,6 @@
 // In:  the film. Out: one ray a pixel, and no hit yet. Directions are not normalised: t counts in units of them.
-// Samples of a pixel follow a Hammersley set, a single one is the pixel's centre.
+// Samples of a pixel follow a Hammersley set, a single one is the pixel's centre. Or, where it is not known how many
+// there will be, the (0,2)-sequence of van der Corput and Sobol (Kollig, Keller 2002), shifted so that it begins there.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/trace.h"
@@ -10,7 +11,24 @@
 layout(local_size_x = CAMERA_RAYS_GROUP) in;
 layout(push_constant, scalar) uniform Push { CameraRaysArgs args; };
 
+uint sobol_digits(uint index) {
+  uint digits = 0u;
+  [[dont_unroll]] for (uint column = 0x80000000u; index != 0u; index >>= 1, column ^= column >> 1) {
+    if ((index & 1u) != 0u) digits ^= column;
+  }
+  return digits;
+}
+
+vec2 sequence_point(uint index) {
+  uvec2 digits = uvec2(bitfieldReverse(index), sobol_digits(index)) ^ 0x80000000u;
+  return vec2(digits >> 8) * 5.9604644775390625e-8;
+}
+
 vec2 film_position(uvec2 pixel, Film film) {
+  if (film.is_sequence != 0u) {
+    precise vec2 in_sequence = vec2(pixel) + sequence_point(args.sample_index);
+    return in_sequence;
+  }
   precise float across = (float(args.sample_index) + 0.5) / float(film.samples);
   float down = film.samples == 1u ? 0.5 : float(bitfieldReverse(args.sample_index) >> 8) * 5.9604644775390625e-8;
   precise vec2 position = vec2(float(pixel.x) + across, float(pixel.y) + down);

@@ -48,10 +48,13 @@ class CommandEnds : public Command {
 TEST_F(CommandEnds, ASignalWhileTracingEndsItWithALineAndNoFile) {
   const std::vector<std::string> before = files();
   for (const int signal : {SIGINT, SIGTERM}) {
-    for (const char* tracer : {"gpu", "cpu"}) {
-      SCOPED_TRACE(std::to_string(signal) + " " + tracer);
-      const pid_t child = start({"render", "one.obj", "--size", "2000x2000", "--spp", "65536", "--tracer",
-                                 tracer, "-o", "out.png", "--json", "out.json"});
+    for (const auto& [tracer, refines] : {std::pair("gpu", false), {"cpu", false}, {"gpu", true}}) {
+      SCOPED_TRACE(std::to_string(signal) + " " + tracer + (refines ? ", refined" : ""));
+      std::vector<const char*> arguments = {"render", "one.obj", "--size",   "2000x2000",
+                                            "--spp",  "65536",   "--tracer", tracer,
+                                            "-o",     "out.png", "--json",   "out.json"};
+      if (refines) arguments.insert(arguments.end(), {"--error", "1e-30"});
+      const pid_t child = start(arguments);
       while (!hears(child, signal)) std::this_thread::sleep_for(std::chrono::milliseconds(5));
       kill(child, signal);
       int status = 0;

@@ -80,6 +80,46 @@ TEST_F(Command, TonesAreMappedInLockstepAndInMotion) {
   EXPECT_NE(hash_with(" --tonemap aces"), hash_with(""));
 }
 
+TEST_F(Command, APictureIsRefinedUntilItsErrorIsReached) {
+  const auto report_of = [](const std::string& options) {
+    const Outcome outcome = run("render terrain:500 --size 53x37 -o p.png --json -" + options);
+    EXPECT_EQ(outcome.status, 0) << options << ": " << outcome.err;
+    return nlohmann::json::parse(outcome.out);
+  };
+  const auto coarse = report_of(" --error 0.05"), fine = report_of(" --error 0.02");
+  EXPECT_EQ(fine["refined"]["ended_by"], "error");
+  EXPECT_LE(fine["refined"]["error"].get<double>(), 0.02);
+  EXPECT_GT(fine["refined"]["error"].get<double>(), 0.01);
+  EXPECT_GT(fine["spp"].get<int>(), coarse["spp"].get<int>());
+  EXPECT_EQ(fine["rays"]["primary"].get<int>(), 53 * 37 * fine["spp"].get<int>());
+  EXPECT_FALSE(report_of(" --spp 4").contains("refined"));
+  // However it ends, as many samples are the same picture; the first is that of one sample.
+  const std::string spp = " --spp " + std::to_string(fine["spp"].get<int>());
+  EXPECT_EQ(report_of(" --error 1e-9 --validate" + spp)["image_hash"], fine["image_hash"]);
+  const auto one = report_of(" --seconds 1e-9");
+  EXPECT_EQ(one["spp"], 1);
+  EXPECT_EQ(one["refined"]["ended_by"], "seconds");
+  EXPECT_TRUE(one["refined"]["error"].is_null());
+  EXPECT_EQ(one["image_hash"], report_of("")["image_hash"]);
+  const auto by_host = report_of(" --error 0.05 --tracer cpu");
+  EXPECT_EQ(by_host["spp"], coarse["spp"]);
+  EXPECT_EQ(by_host["image_hash"], coarse["image_hash"]);
+}
+
+TEST_F(Command, ARefinedPictureMayBeAnExrAndSaysWhatItReached) {
+  const Outcome exr = run("render terrain:500 --size 53x37 -o a.exr --error 0.05"),
+                png = run("render terrain:500 --size 53x37 -o a.png --error 0.05");
+  ASSERT_EQ(exr.status, 0) << exr.err;
+  ASSERT_EQ(png.status, 0) << png.err;
+  EXPECT_EQ(largest_difference(read_exr("a.exr"), read_png("a.png")), 0);
+  EXPECT_NE(png.out.find("relative error 0.0"), std::string::npos) << png.out;
+  for (const char* given : {"0", "-1", "nan", "inf", "x", "''"}) {
+    expect_refused("render one.obj -o out.png --seconds=" + std::string(given), 2, "--seconds");
+    expect_refused("render one.obj -o out.png --error=" + std::string(given), 2, "--error");
+  }
+  expect_refused("render one.obj -o out.png --error 0.1 --runs 2", 2, "--runs");
+}
+
 TEST_F(Command, AnExrIsOfColours) {
   expect_refused("render one.obj -o out.exr --show depth", 2, "PNG");
   expect_refused("render one.obj -o out.hdr", 2, ".png or .exr");

@@ -85,7 +85,8 @@ TEST(SharedLayout, ElementsOfEverySlot) {
   EXPECT_SAME_LAYOUT(InstanceTransform);
   EXPECT_SAME_LAYOUT(MeshRange);
   EXPECT_SAME_LAYOUT(PlacedInstance);
-  EXPECT_EQ(seen.size(), 30u);
+  EXPECT_SAME_LAYOUT(LuminanceSums);
+  EXPECT_EQ(seen.size(), 31u);
 }
 
 }  // namespace

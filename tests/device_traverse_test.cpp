@@ -9,6 +9,7 @@
 #include "analysis/hard_rays.h"
 #include "builders/ploc.h"
 #include "pipeline/wide_plan.h"
+#include "render/scene_arrays.h"
 #include "scene/hard_cases.h"
 #include "support/lockstep.h"
 #include "support/traced.h"

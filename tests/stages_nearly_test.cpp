@@ -165,13 +165,24 @@ TEST(Nearly, ColoursAndPixels) {
   EXPECT_FALSE(compared(Nearly::image, pixels, off).holds());
 }
 
+TEST(Nearly, SumsOfSquaredErrorsMayBeSomeRoundingsOff) {
+  const std::vector<float> sums = {0, 1e-6f, 70, 65536};
+  std::vector<float> off = {0, next(1e-6f), next(next(70)), 65536};
+  EXPECT_TRUE(compared(Nearly::noise, sums, off).holds());
+  off[2] = 70.1f;
+  EXPECT_FALSE(compared(Nearly::noise, sums, off).holds());
+  off = sums;
+  off[0] = nan;
+  EXPECT_FALSE(compared(Nearly::noise, sums, off).holds());
+}
+
 TEST(Nearly, OnlyStagesThatDivideOrTakeRootsAreNearlyEqual) {
   for (const StageDeclaration* const stage : all_stages()) {
     const std::string_view name = stage->name;
     const bool traces = name.starts_with("trace_") && name != "trace_misses";  // which writes constants
     const bool may = traces || name == "camera_rays" || name == "bounce_rays" || name == "shade" ||
                      name == "resolve" || name == "shade_pixels" || name == "show" || name == "shadow_rays" ||
-                     name == "shade_lights";
+                     name == "noise_sum" || name == "shade_lights";
     EXPECT_EQ(!stage->nearly.empty(), may) << name;
   }
 }

@@ -10,9 +10,9 @@
 namespace coppice {
 namespace {
 
-float grey(float x, uint curve) { return twins::tone_of(vec3(x), curve).y; }
+float grey_by(float x, uint curve) { return twins::tone_of(vec3(x), curve).y; }
 
-float luminance(vec3 c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
+float luminance_by_weights(vec3 c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
 
 TEST(ToneMapping, NoneLeavesEveryBit) {
   const vec3 colour = twins::tone_of({-1, 3e38f, 0.1f}, TONE_NONE);
@@ -21,15 +21,15 @@ TEST(ToneMapping, NoneLeavesEveryBit) {
 
 // Equation 4: L (1 + L / white^2) / (1 + L).
 TEST(ToneMapping, ReinhardMakesItsWhiteOneAndKeepsTheRatiosOfChannels) {
-  EXPECT_NEAR(grey(TONE_WHITE, TONE_REINHARD), 1, 1e-6);
-  EXPECT_NEAR(grey(1, TONE_REINHARD), (1 + 1 / 16.0) / 2, 1e-6);
-  EXPECT_NEAR(grey(0.18f, TONE_REINHARD), 0.18 * (1 + 0.18 / 16) / 1.18, 1e-6);
-  EXPECT_EQ(grey(0, TONE_REINHARD), 0);
+  EXPECT_NEAR(grey_by(TONE_WHITE, TONE_REINHARD), 1, 1e-6);
+  EXPECT_NEAR(grey_by(1, TONE_REINHARD), (1 + 1 / 16.0) / 2, 1e-6);
+  EXPECT_NEAR(grey_by(0.18f, TONE_REINHARD), 0.18 * (1 + 0.18 / 16) / 1.18, 1e-6);
+  EXPECT_EQ(grey_by(0, TONE_REINHARD), 0);
   const vec3 colour{3, 0.5f, 0.125f}, mapped = twins::tone_of(colour, TONE_REINHARD);
   EXPECT_NEAR(mapped.x / mapped.y, 6, 1e-5);
   EXPECT_NEAR(mapped.y / mapped.z, 4, 1e-5);
-  const float y = luminance(colour);
-  EXPECT_NEAR(luminance(mapped), y * (1 + y / 16) / (1 + y), 1e-5);
+  const float y = luminance_by_weights(colour);
+  EXPECT_NEAR(luminance_by_weights(mapped), y * (1 + y / 16) / (1 + y), 1e-5);
 }
 
 // The values of Hill's fit in double, and that grey stays grey.
@@ -47,17 +47,17 @@ TEST(ToneMapping, AcesHasTheValuesOfItsFit) {
 
 TEST(ToneMapping, CurvesRiseFromBlackAndTakeAnything) {
   for (const uint curve : {TONE_REINHARD, TONE_ACES}) {
-    float before = grey(0, curve);
+    float before = grey_by(0, curve);
     EXPECT_LE(before, 0);
     for (int i = -40; i <= 64; ++i) {
-      const float x = std::exp2(static_cast<float>(i) / 4), now = grey(x, curve);
+      const float x = std::exp2(static_cast<float>(i) / 4), now = grey_by(x, curve);
       EXPECT_GT(now, before) << TONE_CURVE_NAMES[curve] << " of " << x;
       before = now;
     }
     constexpr float inf = std::numeric_limits<float>::infinity();
-    EXPECT_TRUE(std::isfinite(grey(inf, curve)));
-    EXPECT_EQ(grey(std::nanf(""), curve), grey(0, curve));
-    EXPECT_EQ(grey(-inf, curve), grey(0, curve));
+    EXPECT_TRUE(std::isfinite(grey_by(inf, curve)));
+    EXPECT_EQ(grey_by(std::nanf(""), curve), grey_by(0, curve));
+    EXPECT_EQ(grey_by(-inf, curve), grey_by(0, curve));
   }
 }
 

@@ -37,6 +37,7 @@ class RenderCommand : public Command {
     add_effects(app, scene_.effects);
     add_tone(app, picture_.trace.tone);
     app.add_flag("--explain", explain_, "say of each effect whether it is on, and what called for it");
+    add_refine(app, refine_);
     add_show(app, show_);
     add_intersection(app, picture_.trace);
     add_tree(app, device_.choices.walk);
@@ -48,11 +49,13 @@ class RenderCommand : public Command {
 
   void check(const CLI::App& app) override {
     parse_view(picture_);
+    if (app.get_option("--spp")->count() > 0) refine_.most_samples = picture_.trace.samples;
     const bool builds = builder_.on_device(), traces = traces_on_device(), either = builds || traces;
     check_show(app);
     picture_.trace.keep_radiance = is_exr(files.picture);
     check_options_matter(app, {{"--trace-events", either, NEEDS_DEVICE},
                                {"--validate", either, NEEDS_DEVICE},
+                               {"--runs", !refine_.any(), "a picture of as many samples as --spp says"},
                                {"--variants", either, NEEDS_DEVICE},
                                {"--lookback", builds, NEEDS_DEVICE_BUILDER},
                                {"--kernels", traces, NEEDS_DEVICE_TRACER},
@@ -102,6 +105,8 @@ class RenderCommand : public Command {
     if (builder_.name == "none") picture_.trace.walk = Walk::brute_force;
     FrameRuns frame{builder_, picture_.trace, picture_.camera, runs_, false, files.trace_events, show_};
     frame.effects = scene_.effects;
+    frame.refine = refine_;
+    if (refine_.any()) frame.trace.samples = refine_.most_samples;
     frame.explains = explain_;
     frame.split = kernels_ || !files.json.empty() || !files.trace_events.empty();
     std::optional<CheckedDevice> device;
@@ -163,6 +168,7 @@ class RenderCommand : public Command {
   std::uint32_t runs_ = 1;
   SceneOptions scene_;
   PictureOptions picture_;
+  RefineLimits refine_;
   ShowOptions show_;
   BuilderChoice builder_;
   DeviceSetup device_;

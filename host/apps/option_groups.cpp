@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "builders/registry.h"
 #include "interface/ploc.h"
@@ -84,6 +85,14 @@ void add_words(CLI::App& app, const std::string& name, T& value, const Word<T> (
     value = std::ranges::find(words, given, &Word<T>::word)->value;
   };
   app.add_option_function<std::string>(name, set, help)->check(CLI::IsMember(names))->default_str(names[0]);
+}
+
+// The whole text; infinity and NaN are none.
+std::optional<double> number_of(const std::string& text) {
+  double number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [last, error] = std::from_chars(text.data() + text.starts_with('+'), end, number);
+  return error == std::errc() && last == end && std::isfinite(number) ? std::optional(number) : std::nullopt;
 }
 
 }  // namespace
@@ -231,14 +240,25 @@ void add_tone(CLI::App& app, ToneMapping& tone) {
   app.add_option("--exposure", tone.stops, "of colours, before: they are multiplied by 2 to this power")
       ->type_name("STOPS")
       ->check([](const std::string& text) {
-        double stops = 0;
-        const char* const first = text.data() + text.starts_with('+');
-        const auto [end, error] = std::from_chars(first, text.data() + text.size(), stops);
-        const bool parsed = error == std::errc() && end == text.data() + text.size();
-        return parsed && std::abs(stops) <= 64 ? std::string()
-                                               : "'" + text + "' is no number between -64 and 64";
+        const std::optional<double> stops = number_of(text);
+        return stops && std::abs(*stops) <= 64 ? "" : "'" + text + "' is no number between -64 and 64";
       })
       ->default_str("0");
+}
+
+void add_refine(CLI::App& app, RefineLimits& refine) {
+  const auto add = [&](const char* name, double& value, double most, const char* help) {
+    app.add_option(name, value, help)->check([most](const std::string& text) {
+      const std::optional<double> number = number_of(text);
+      return number && *number > 0 && *number <= most
+                 ? ""
+                 : "'" + text + "' is no number above 0 and up to " + std::to_string(static_cast<int>(most));
+    });
+  };
+  add("--seconds", refine.seconds, 86400,
+      "more and more samples, at most as many as --spp says, until so long was spent on tracing");
+  add("--error", refine.error, 100,
+      "the same until the picture's relative error, estimated from its samples, is no more than this");
 }
 
 void add_effects(CLI::App& app, EffectChanges& effects) {

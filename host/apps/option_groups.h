@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "measure/builder_choice.h"
+#include "measure/refine.h"
 #include "pipeline/checked_device.h"
 #include "pipeline/trace_plan.h"
 #include "render/show.h"
@@ -44,6 +45,7 @@ void add_size(CLI::App& app, PictureOptions& picture);
 void add_view(CLI::App& app, PictureOptions& picture, std::string& up);     // size and camera
 void add_picture(CLI::App& app, PictureOptions& picture, std::string& up);  // view and samples
 void add_tone(CLI::App& app, ToneMapping& tone);                            // and exposure
+void add_refine(CLI::App& app, RefineLimits& refine);
 void add_effects(CLI::App& app, EffectChanges& effects);
 void add_show(CLI::App& app, ShowOptions& show);
 void add_update(CLI::App& app, Update& update);

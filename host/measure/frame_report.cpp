@@ -1,5 +1,6 @@
 #include "measure/frame_report.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "analysis/tree_hash.h"
@@ -31,6 +32,10 @@ Json camera_of(const Scene& scene, const FrameRuns& frame) {
           {"fov", view.vertical_fov_degrees}};
 }
 
+std::uint32_t samples_of(const FrameReport& report, const FrameRuns& frame) {
+  return report.refined ? report.refined->samples : frame.trace.samples;
+}
+
 double mrays_per_s(const FrameReport& report) {
   return static_cast<double>(report.rays + report.shadow.rays) / report.trace_ms / 1000;
 }
@@ -42,7 +47,7 @@ Json to_json(const FrameReport& report, const Scene& scene, const FrameRuns& fra
   Json json = {{"build", to_json(report.build)},
                {"width", frame.trace.width},
                {"height", frame.trace.height},
-               {"spp", frame.trace.samples},
+               {"spp", samples_of(report, frame)},
                {"tonemap", TONE_CURVE_NAMES[frame.trace.tone.curve]},
                {"exposure", frame.trace.tone.stops},
                {"offset", coordinates(scene.offset)},
@@ -63,6 +68,10 @@ Json to_json(const FrameReport& report, const Scene& scene, const FrameRuns& fra
                {"effects", names_of_effects(scene, effects_of(scene, frame.effects))},
                {"kernels", to_json(report.kernels)}};
   sums_to_json(report.kernels, json);
+  if (report.refined)
+    json["refined"] = {{"seconds", report.refined->seconds},
+                       {"error", std::isfinite(report.refined->error) ? Json(report.refined->error) : Json()},
+                       {"ended_by", name_of(report.refined->ended_by)}};
   if (frame.explains) json["explained"] = to_json(effects_of(scene, frame.effects));
   json["show"] = name_of(report.shown.options.show);
   json["shown"] = to_json(report.shown, scene);
@@ -90,8 +99,14 @@ std::string text_of(const FrameReport& report, const Scene& scene, const FrameRu
   if (report.walks_wide)
     text += format("  wide     %9.1f ms  the tree with eight children a node\n", report.wide_ms);
   text += format("  trace    %9.1f ms  %ux%u, %u spp, %.2f Mrays/s on the %s\n", report.trace_ms,
-                 frame.trace.width, frame.trace.height, frame.trace.samples, mrays_per_s(report),
+                 frame.trace.width, frame.trace.height, samples_of(report, frame), mrays_per_s(report),
                  around.tracer.c_str());
+  if (report.refined) {
+    const Refined& refined = *report.refined;
+    const std::string error = refined.samples > 1 ? format("%.3g", refined.error) : "unknown: of one sample";
+    text += format("  refined  %9.1f s   relative error %s, ended by %s\n", refined.seconds, error.c_str(),
+                   name_of(refined.ended_by));
+  }
   if (report.shadow.rays > 0)
     text += format("  shadows  %9llu rays, %llu of them blocked\n",
                    static_cast<unsigned long long>(report.shadow.rays),

@@ -1,6 +1,7 @@
 #include "measure/measure_frame.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "measure/measure_build.h"
 #include "measure/progress.h"
@@ -65,9 +66,48 @@ class TraceProgress {
   Progress bar_;
 };
 
+// Seconds that the passes took, of the host's clock, are those of all their submits.
+// Returns milliseconds of the device's clock.
+double refine_frame(GpuExecutor& executor, const FramePlan& plan, Film& film, Pace& pace,
+                    const RefineLimits& limits, std::optional<Refined>& refined) {
+  double ms = 0;
+  const auto submit = [&](const auto& append) {
+    Chain chain = executor.chain();
+    append(chain);
+    return executor.record(chain.steps()).submit_and_wait(piece_limit_seconds);
+  };
+  const auto pass = [&](std::uint32_t first, std::uint32_t end) {
+    double wall_ms = 0;
+    submit_pieces(executor, plan.pieces(plan_of_pass(plan.trace, first, end)), pace, Timestamps::total,
+                  [&](const SubmittedPiece& piece) {
+                    ms += piece.times.total_ms;
+                    wall_ms += piece.times.wall_ms;
+                  });
+    return wall_ms / 1000;
+  };
+  const auto error = [&](std::uint32_t samples) {
+    submit([&](Chain& chain) { append_noise_sum(chain, plan.trace.noise, samples); });
+    return picture_error(executor.read(noise_sum_of(plan.trace.noise))[0], plan.trace.image.count);
+  };
+  refined = refine(limits, pass, error);
+  film.samples = refined->samples;
+  executor.upload(plan.trace.film, std::span<const Film>(&film, 1));
+  return ms + submit([&](Chain& chain) { append_resolved(chain, plan.trace); }).total_ms;
+}
+
+// The same of a picture of as many samples as it is planned with.
+double trace_frame(GpuExecutor& executor, const FramePlan& plan, Pace& pace, TraceProgress& progress) {
+  double ms = 0;
+  submit_pieces(executor, plan.pieces(plan.trace), pace, Timestamps::total, [&](const SubmittedPiece& piece) {
+    ms += piece.times.total_ms;
+    progress.add(piece.work);
+  });
+  return ms;
+}
+
 // Nothing is read back in between but times.
-void measure_frames(GpuExecutor& executor, const TreeSteps& steps, const FramePlan& plan, Pace& pace,
-                    std::uint32_t runs, TraceProgress& progress, FrameReport& report) {
+void measure_frames(GpuExecutor& executor, const TreeSteps& steps, const FramePlan& plan, std::uint32_t runs,
+                    const std::function<double()>& trace, FrameReport& report) {
   Recorder build = executor.record(steps.build), wide = executor.record(steps.wide);
   std::vector<double> build_ms, wide_ms, trace_ms, wall_ms;
   for (std::uint32_t run = 0; run < runs; ++run) {
@@ -77,12 +117,7 @@ void measure_frames(GpuExecutor& executor, const TreeSteps& steps, const FramePl
       wall_ms.push_back(times.wall_ms);
     }
     if (plan.wide) wide_ms.push_back(wide.submit_and_wait(piece_limit_seconds).total_ms);
-    double& ms = trace_ms.emplace_back(0);
-    submit_pieces(executor, plan.pieces(plan.trace), pace, Timestamps::total,
-                  [&](const SubmittedPiece& piece) {
-                    ms += piece.times.total_ms;
-                    progress.add(piece.work);
-                  });
+    trace_ms.push_back(trace());
     check_state(executor, plan.tree);
   }
   report.trace_ms = spread_of(trace_ms).median;
@@ -122,14 +157,19 @@ void split_kernels(CheckedDevice& device, GpuExecutor& executor, const TreeSteps
     tree_sums.add(split.steps, split.times, counts_of_tree(executor, plan));
     events.add(split);
   }
-  submit_pieces(executor, plan.pieces(plan.trace), pace, Timestamps::every_step,
-                [&](const SubmittedPiece& piece) {
-                  sums.add(piece.steps, piece.times, counts);
-                  if (!trace_events.empty()) events.add(piece.steps, piece.times);
-                  progress.add(piece.work);
-                });
+  double trace_ms = report.trace_ms;
+  TracePlan trace = plan.trace;
+  if (report.refined) {
+    trace.options.samples = 1;
+    trace_ms /= report.refined->samples;
+  }
+  submit_pieces(executor, plan.pieces(trace), pace, Timestamps::every_step, [&](const SubmittedPiece& piece) {
+    sums.add(piece.steps, piece.times, counts);
+    if (!trace_events.empty()) events.add(piece.steps, piece.times);
+    progress.add(piece.work);
+  });
   const auto limit = find_copy_limit(device, std::max(tree_sums.largest_dispatch(), sums.largest_dispatch()));
-  report.kernels = kernel_table(sums, limit, report.trace_ms);
+  report.kernels = kernel_table(sums, limit, trace_ms);
   if (!tree_steps.empty()) {
     const double build_ms = plan.build ? report.build.build_ms.median : 0;
     report.build.kernels = kernel_table(tree_sums, limit, build_ms + report.wide_ms);
@@ -179,6 +219,7 @@ FrameReport measure_frame(CheckedDevice& device, const Scene& scene, const Frame
   FrameOptions options{.trace = frame.trace};
   options.trace.directional_light = scene.light.radiance != vec3(0);
   options.trace.show = kernel_view(frame.show.show);
+  options.trace.keep_noise = frame.refine.any();
   Bvh bvh;
   if (frame.builder.on_device()) {
     options.build = device.build_options(frame.builder.build_options(report.build.morton_bits));
@@ -191,8 +232,8 @@ FrameReport measure_frame(CheckedDevice& device, const Scene& scene, const Frame
   Layout layout(device.properties().max_block_bytes);
   const FramePlan plan = plan_frame(layout, arrays, options);
   GpuExecutor executor(device.device(), layout);
-  const Film film =
-      make_film(scene, frame.camera, frame.trace.width, frame.trace.height, frame.trace.samples);
+  Film film = make_film(scene, frame.camera, frame.trace.width, frame.trace.height, frame.trace.samples);
+  film.is_sequence = frame.refine.any();
   upload_frame(executor, plan, arrays, film);
   report.shown.options = frame.show;
   report.shown.scale =
@@ -204,7 +245,11 @@ FrameReport measure_frame(CheckedDevice& device, const Scene& scene, const Frame
   Pace pace = warm_up(executor, steps, plan, device.properties());
   upload_shown(executor, plan, arrays, report);
   TraceProgress progress(plan.pieces(plan.trace).work(), frame.runs + frame.split);
-  measure_frames(executor, steps, plan, pace, frame.runs, progress, report);
+  const auto trace = [&] {
+    return frame.refine.any() ? refine_frame(executor, plan, film, pace, frame.refine, report.refined)
+                              : trace_frame(executor, plan, pace, progress);
+  };
+  measure_frames(executor, steps, plan, frame.runs, trace, report);
   const RunCounts counts = counts_of_picture(executor, plan.trace);
   report.rays = counts.rays;
   report.hits = counts.hits;

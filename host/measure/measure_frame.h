@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "measure/build_report.h"
 #include "measure/builder_choice.h"
+#include "measure/refine.h"
 #include "pipeline/checked_device.h"
 #include "pipeline/trace_plan.h"
 #include "render/show.h"
@@ -22,6 +24,7 @@ struct FrameRuns {
   std::string trace_events{};    // a file; empty: none
   ShowOptions show{};            // clusters only of gpu-ploc
   EffectChanges effects{};       // beside what the scene calls for
+  RefineLimits refine{};         // if there are any, one run; samples are those of the trace at most
   bool explains = false;         // the report says why each effect is on or off
 };
 
@@ -40,10 +43,11 @@ struct FrameReport {
   TraceCounts shadow;                           // of shadow rays
   std::string trace_device;                     // name and driver
   bool walks_wide = false;
-  KernelTable kernels;         // of the trace, on a device
+  KernelTable kernels;         // of the trace, on a device; of a refined one of one more sample
   std::vector<uint> image;     // RGBA8
   std::vector<vec3> radiance;  // linear, a mean a pixel, rows top to bottom; if it was asked for
   ShownReport shown;
+  std::optional<Refined> refined{};
 };
 
 // Builds in one submit and traces in as many as keep each short, with nothing but times read back in between;

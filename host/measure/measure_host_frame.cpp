@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <functional>
 
 #include "analysis/cpu_tracer.h"
 #include "measure/measure_build.h"
@@ -44,21 +45,16 @@ void trace_any_on_host(const TraceAnyArgs& args, const Bvh& bvh, std::span<const
   report.shadow.hits += count_hits(hits);
 }
 
-// The device's chain, in pieces, with the independent tracer in the place of its tracer.
-void trace_on_host(CpuExecutor& executor, const TreeSlots& tree, const TracePlan& trace, const Bvh& bvh,
-                   std::span<const Triangle> triangles, FrameReport& report) {
-  // So that Ctrl-C is heard soon.
-  constexpr double target_ms = 200;
-  Pace pace(target_ms, bvh.nodes.empty() ? (1u << 20) / (triangles.size() + 1) + 1 : 256);
-  const InterruptionGuard guard;
-  TracePieces pieces(tree, trace);
-  Progress progress("tracing", 100);
-  const auto start = std::chrono::steady_clock::now();
-  while (!pieces.done()) {
-    throw_if_interrupted();
-    Chain chain = executor.chain();
-    const auto piece_start = std::chrono::steady_clock::now();
-    const std::uint64_t work = pieces.append(chain, pace.work());
+// The device's chain, with the independent tracer in the place of its tracer.
+struct HostTrace {
+  CpuExecutor& executor;
+  const FramePlan& plan;
+  const Bvh& bvh;
+  std::span<const Triangle> triangles;
+  FrameReport& report;
+  Pace pace;
+
+  void run(const Chain& chain) {
     for (const Step& step : chain.steps()) {
       if (const TraceClosestArgs* const closest = args_of(step, stages::trace_closest))
         trace_closest_on_host(*closest, bvh, triangles, report);
@@ -67,14 +63,69 @@ void trace_on_host(CpuExecutor& executor, const TreeSlots& tree, const TracePlan
       else
         executor.run(step);
     }
-    pace.note(
-        work,
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - piece_start).count());
-    progress.advance(static_cast<std::uint32_t>(100 * report.rays / pieces.work()));
   }
-  throw_if_interrupted();
-  report.trace_ms =
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+
+  // In pieces, so that Ctrl-C is heard soon. Returns the seconds they took, and calls `after` with the work
+  // of each.
+  double trace(const TracePlan& trace, const std::function<void(std::uint64_t)>& after = {}) {
+    double ms = 0;
+    for (TracePieces pieces = plan.pieces(trace); !pieces.done();) {
+      throw_if_interrupted();
+      Chain chain = executor.chain();
+      const auto start = std::chrono::steady_clock::now();
+      const std::uint64_t work = pieces.append(chain, pace.work());
+      run(chain);
+      const double piece_ms =
+          std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+      pace.note(work, piece_ms);
+      ms += piece_ms;
+      if (after) after(work);
+    }
+    throw_if_interrupted();
+    return ms / 1000;
+  }
+};
+
+Refined refine_on_host(HostTrace& host, Film& film, const RefineLimits& limits) {
+  const TracePlan& trace = host.plan.trace;
+  const auto pass = [&](std::uint32_t first, std::uint32_t end) {
+    return host.trace(plan_of_pass(trace, first, end));
+  };
+  const auto error = [&](std::uint32_t samples) {
+    Chain chain = host.executor.chain();
+    append_noise_sum(chain, trace.noise, samples);
+    host.run(chain);
+    return picture_error(host.executor.read(noise_sum_of(trace.noise))[0], trace.image.count);
+  };
+  const Refined refined = refine(limits, pass, error);
+  film.samples = refined.samples;
+  host.executor.upload(trace.film, std::span<const Film>(&film, 1));
+  Chain pixels = host.executor.chain();
+  append_resolved(pixels, trace);
+  host.run(pixels);
+  return refined;
+}
+
+void trace_on_host(CpuExecutor& executor, const FramePlan& plan, const Bvh& bvh,
+                   std::span<const Triangle> triangles, const RefineLimits& limits, Film& film,
+                   FrameReport& report) {
+  constexpr double target_ms = 200;
+  const std::uint64_t first_work = bvh.nodes.empty() ? (1u << 20) / (triangles.size() + 1) + 1 : 256;
+  HostTrace host{executor, plan, bvh, triangles, report, Pace(target_ms, first_work)};
+  const InterruptionGuard guard;
+  if (limits.any()) {
+    report.refined = refine_on_host(host, film, limits);
+    report.trace_ms = 1000 * report.refined->seconds;
+    return;
+  }
+  Progress progress("tracing", 100);
+  const std::uint64_t all_work = plan.pieces(plan.trace).work();
+  std::uint64_t done_work = 0;
+  const double seconds = host.trace(plan.trace, [&](std::uint64_t work) {
+    done_work += work;
+    progress.advance(static_cast<std::uint32_t>(100 * done_work / all_work));
+  });
+  report.trace_ms = 1000 * seconds;
 }
 
 }  // namespace
@@ -97,11 +148,12 @@ FrameReport measure_host_frame(CheckedDevice* device, const Scene& scene, const 
   Layout layout(~std::uint64_t{0});
   FrameOptions options{.trace = frame.trace};
   options.trace.show = kernel_view(frame.show.show);
+  options.trace.keep_noise = frame.refine.any();
   options.trace.walk = Walk::binary;  // in its place traces the CPU tracer, which has the tree
   const FramePlan plan = plan_frame(layout, arrays, options);
   CpuExecutor executor(layout);
-  const Film film =
-      make_film(scene, frame.camera, frame.trace.width, frame.trace.height, frame.trace.samples);
+  Film film = make_film(scene, frame.camera, frame.trace.width, frame.trace.height, frame.trace.samples);
+  film.is_sequence = frame.refine.any();
   upload_frame(executor, plan.tree, plan.trace, arrays, film);
   report.shown.options = frame.show;
   report.shown.scale =
@@ -111,7 +163,7 @@ FrameReport measure_host_frame(CheckedDevice* device, const Scene& scene, const 
     executor.upload(plan.trace.show.primitive_values,
                     std::span<const uint>(shown_values(frame.show, arrays.triangles, report.build.morton_bits,
                                                        {bvh.nodes, {}})));
-  trace_on_host(executor, plan.tree, plan.trace, bvh, arrays.triangles, report);
+  trace_on_host(executor, plan, bvh, arrays.triangles, frame.refine, film, report);
   report.image = executor.read(plan.trace.image);
   if (plan.trace.options.keep_radiance)
     report.radiance =

@@ -1,7 +1,6 @@
 #include "pipeline/trace_pieces.h"
 
 #include <algorithm>
-#include <bit>
 
 #include "stages/stages.h"
 
@@ -115,7 +114,7 @@ void TracePieces::append_shade(Chain& chain, Vec3Buffer radiance) const {
   chain.run(stages::shade,
             {triangles, material_index, chain.at(plan_.materials), chain.at(plan_.lighting),
              chain.at(plan_.rays, range_.first), chain.at(plan_.hits, range_.first), radiance, range_.count,
-             sample_},
+             summed_samples()},
             groups_of(range_.count, SHADE_GROUP),
             {plan_.options.directional_light && plan_.options.lights.lights == 0});
 }
@@ -138,7 +137,8 @@ void TracePieces::append_show(Chain& chain, Vec3Buffer radiance) const {
        address_or_null(chain, plan_.ray_steps, range_.first), address_or_null(chain, show.primitive_values),
        address_or_null(chain, placed.hit_instances, range_.first),
        address_or_null(chain, placed.primitives, range_.first), chain.at(show.colour_map),
-       chain.at(show.scale), chain.at(show.range), radiance, range_.count, sample_, plan_.options.show, 0},
+       chain.at(show.scale), chain.at(show.range), radiance, range_.count, summed_samples(),
+       plan_.options.show, 0},
       groups_of(range_.count, SHOW_GROUP), {plan_.options.show});
 }
 
@@ -152,21 +152,20 @@ void TracePieces::append_pixels(Chain& chain) const {
 }
 
 void TracePieces::append_radiance(Chain& chain) const {
-  const auto radiance =
-      chain.at(plan_.radiance, (plan_.options.keep_radiance ? band_first_ : 0) + range_.first);
-  if (plan_.options.show != SHOW_COLOR) {
+  const TraceOptions& options = plan_.options;
+  const std::uint32_t first_pixel = band_first_ + range_.first;
+  const auto sum = chain.at(plan_.radiance, keeps_whole_radiance(options) ? first_pixel : range_.first);
+  const auto radiance = options.keep_noise ? chain.at(plan_.noise.sample_radiance, range_.first) : sum;
+  if (options.show != SHOW_COLOR) {
     append_show(chain, radiance);
   } else {
     append_shade(chain, radiance);
     append_all_lights(chain, radiance);
   }
-  if (sample_ + 1 == plan_.options.samples) {
-    const ToneMapping tone = plan_.options.show == SHOW_COLOR ? plan_.options.tone : ToneMapping{};
-    chain.run(stages::resolve,
-              {chain.at(plan_.film), radiance, chain.at(plan_.srgb_thresholds), chain.at(plan_.image),
-               band_first_ + range_.first, range_.count, std::bit_cast<uint>(tone.exposure()), tone.curve},
-              groups_of(range_.count, RESOLVE_GROUP), {tone.curve, tone.exposure() != 1});
-  }
+  if (options.keep_noise)
+    append_sample(chain, plan_.noise, range_.first, first_pixel, range_.count, sum, sample_);
+  if (options.resolves && sample_ + 1 == options.samples)
+    append_resolve(chain, plan_, sum, first_pixel, range_.count);
 }
 
 void TracePieces::close_range(Chain& chain) {
@@ -179,7 +178,7 @@ void TracePieces::close_range(Chain& chain) {
   if (range_.first < band_rays()) return;
   range_ = {};
   if (++sample_ < plan_.options.samples) return;
-  sample_ = 0;
+  sample_ = plan_.options.first_sample;
   band_first_ += band_rays();
 }
 

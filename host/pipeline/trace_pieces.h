@@ -75,11 +75,17 @@ class TracePieces {
   // `levels`: of instances, whose tree `tree` then is; null: of triangles.
   TracePieces(const TreeSlots& tree, const TracePlan& plan, std::uint32_t first_pixel = 0,
               const TwoLevels* levels = nullptr)
-      : tree_(tree), plan_(plan), levels_(levels), band_first_(first_pixel) {}
+      : tree_(tree),
+        plan_(plan),
+        levels_(levels),
+        cleared_(plan.options.first_sample > 0),
+        band_first_(first_pixel),
+        sample_(plan.options.first_sample) {}
 
   bool done() const { return band_first_ >= plan_.image.count; }
   std::uint64_t work() const {
-    return work_of(tree_, plan_.options, plan_.image.count * plan_.options.samples);
+    return work_of(tree_, plan_.options,
+                   plan_.image.count * (plan_.options.samples - plan_.options.first_sample));
   }
 
   // As HitPieces::append.
@@ -87,6 +93,8 @@ class TracePieces {
 
  private:
   std::uint32_t band_rays() const;
+  // Those that are in the radiance that this one is added to: none where each is shaded by itself.
+  std::uint32_t summed_samples() const { return plan_.options.keep_noise ? 0 : sample_; }
   std::uint64_t append_hits(Chain& chain, std::uint64_t work);
   void open_range(Chain& chain, std::uint64_t work);
   void close_range(Chain& chain);
@@ -105,10 +113,10 @@ class TracePieces {
 
   TreeSlots tree_;
   TracePlan plan_;
-  const TwoLevels* levels_;  // outlive it
-  bool cleared_ = false;
+  const TwoLevels* levels_;   // outlive it
+  bool cleared_;              // counts, which go on from the samples before
   std::uint32_t band_first_;  // pixel; a band goes through all its samples before the next one
-  std::uint32_t sample_ = 0;
+  std::uint32_t sample_;
   RayRange range_;  // of the band; no rays: the next one is yet to be opened
 };
 

@@ -93,8 +93,10 @@ float ToneMapping::exposure() const { return static_cast<float>(std::exp2(stops)
 
 bool keeps_radiance(const TraceOptions& options) {
   return options.samples > 1 || options.show != SHOW_COLOR || options.lights.lights > 0 ||
-         options.tone.changes() || options.keep_radiance;
+         options.tone.changes() || keeps_whole_radiance(options);
 }
+
+bool keeps_whole_radiance(const TraceOptions& options) { return options.keep_radiance || options.keep_noise; }
 
 bool can_trace_wide(const TraceOptions& options) {
   return options.walk != Walk::brute_force && options.triangle_test == TRIANGLE_WATERTIGHT &&
@@ -184,12 +186,29 @@ TracePlan plan_trace(Layout& layout, const TreeSlots& tree, std::uint32_t materi
   const std::uint32_t kept_rays = traces_pixels(options) ? 0 : plan.band_rays;
   plan.rays = layout.add<Ray>("rays", kept_rays);
   plan.hits = layout.add<Hit>("hits", kept_rays);
-  const std::uint32_t kept_radiance = options.keep_radiance ? pixels : plan.band_rays;
+  const std::uint32_t kept_radiance = keeps_whole_radiance(options) ? pixels : plan.band_rays;
   plan.radiance = layout.add<vec3>("radiance", keeps_radiance(options) ? kept_radiance : 0);
+  if (options.keep_noise) plan.noise = plan_noise(layout, plan.band_rays, pixels);
   if (options.show == SHOW_COLOR) plan.lights = plan_lights(layout, options.lights, plan.band_rays);
   if (options.show != SHOW_COLOR) plan.show = plan_show(layout, tree, options.show);
   if (options.show == SHOW_STEPS) plan.ray_steps = layout.add<uint>("ray_steps", plan.band_rays);
   return plan;
+}
+
+void append_resolve(Chain& chain, const TracePlan& plan, Vec3Buffer radiance, std::uint32_t first_pixel,
+                    std::uint32_t count) {
+  const ToneMapping tone = plan.options.show == SHOW_COLOR ? plan.options.tone : ToneMapping{};
+  chain.run(stages::resolve,
+            {chain.at(plan.film), radiance, chain.at(plan.srgb_thresholds), chain.at(plan.image), first_pixel,
+             count, std::bit_cast<uint>(tone.exposure()), tone.curve},
+            groups_of(count, RESOLVE_GROUP), {tone.curve, tone.exposure() != 1});
+}
+
+void append_resolved(Chain& chain, const TracePlan& plan) {
+  const auto pixels = static_cast<std::uint32_t>(plan.image.count);
+  for (std::uint32_t first = 0; first < pixels; first += plan.band_rays)
+    append_resolve(chain, plan, chain.at(plan.radiance, first), first,
+                   std::min(plan.band_rays, pixels - first));
 }
 
 void append_trace(Chain& chain, const TreeSlots& tree, const TracePlan& plan) {

@@ -7,6 +7,7 @@
 #include "pipeline/build_plan.h"
 #include "pipeline/lights.h"
 #include "pipeline/ray_filter.h"
+#include "pipeline/refine.h"
 #include "pipeline/walk.h"
 
 namespace coppice {
@@ -40,6 +41,11 @@ struct TraceOptions {
   bool keep_hits = false;           // the rays of the last sample and their hits are asked for
   ToneMapping tone{};               // of colours
   bool keep_radiance = false;       // that of the whole picture is asked for, 12 bytes a pixel
+  // Of a picture that is refined by and by. The samples of a pixel are taken from `first_sample` to
+  // `samples`, and added to those before it.
+  bool keep_noise = false;         // and how far samples are apart, as much again; each is shaded by itself
+  std::uint32_t first_sample = 0;  // of those before it radiance is kept
+  bool resolves = true;            // pixels are made of the last sample
 };
 
 // Whether the wide tree can be walked: its tracers have the watertight and the robust test only, so that the
@@ -49,6 +55,9 @@ bool can_trace_wide(const TraceOptions& options);
 // Whether samples or lights are added up before they are pixels, what they see is not colour, tones are
 // mapped, or radiance is asked for.
 bool keeps_radiance(const TraceOptions& options);
+
+// Whether it is kept of the whole picture, not of a band.
+bool keeps_whole_radiance(const TraceOptions& options);
 
 // Whether each ray becomes a pixel at once (trace_pixels): of packets through the wide tree, where neither
 // rays nor hits nor radiance are kept.
@@ -93,6 +102,7 @@ struct TracePlan : RaySlots {
   // Summed over the samples, in the order of FILM_STRIP: one a ray of the band, or a pixel of the picture
   // where that is asked for; none where none is kept.
   Slot<vec3> radiance;
+  NoiseSlots noise;
   LightSlots lights;
   ShowSlots show;
 };
@@ -131,6 +141,13 @@ static_assert(RANGE_RAYS % TRACE_PACKET == 0 && RANGE_RAYS % TRACE_GROUP == 0);
 // From the hits of the first `ray_count` rays one ray each, random by `seed`, with no hit yet.
 void append_bounce(Chain& chain, const TreeSlots& tree, const RaySlots& slots, const RaySlots& bounced,
                    std::uint32_t ray_count, std::uint32_t seed);
+
+// Pixels of so much radiance.
+void append_resolve(Chain& chain, const TracePlan& plan, Vec3Buffer radiance, std::uint32_t first_pixel,
+                    std::uint32_t count);
+
+// Pixels of radiance that is kept of the whole picture.
+void append_resolved(Chain& chain, const TracePlan& plan);
 
 // Tree to image: camera rays, closest hits, shading, sRGB.
 void append_trace(Chain& chain, const TreeSlots& tree, const TracePlan& plan);

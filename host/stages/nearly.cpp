@@ -13,6 +13,7 @@ namespace coppice {
 namespace {
 
 constexpr float vector_tolerance = 0x1p-18f, t_tolerance = 0x1p-16f, colour_tolerance = 0x1p-16f;
+constexpr float noise_tolerance = 0x1p-12f;
 constexpr float barycentric_tolerance = 0.0625f;
 
 std::uint64_t thousandth(std::uint64_t count) { return (count + 900) / 1000; }
@@ -101,6 +102,10 @@ Verdict judge(const vec3& cpu, const vec3& gpu, NearlyEqual&) {
                                                                            : Verdict::beyond;
 }
 
+Verdict judge(const float& cpu, const float& gpu, NearlyEqual&) {
+  return within(cpu, gpu, noise_tolerance * std::abs(cpu)) ? Verdict::within : Verdict::beyond;
+}
+
 // Off by one code is beyond the tolerance and may happen; by more may not.
 Verdict judge(const uint& cpu, const uint& gpu, NearlyEqual& result) {
   for (int shift = 0; shift < 32; shift += 8) {
@@ -161,6 +166,8 @@ NearlyEqual compare_nearly(Nearly like, std::span<const std::byte> cpu, std::spa
       return compare<TraceCounters>(cpu, gpu, none);
     case Nearly::radiance:
       return compare<vec3>(cpu, gpu, thousandth);
+    case Nearly::noise:
+      return compare<float>(cpu, gpu, none);
     case Nearly::image:
       return compare<uint>(cpu, gpu, thousandth);
   }

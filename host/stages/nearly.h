@@ -25,6 +25,7 @@ namespace coppice {
 //   radiance  colours that differ by at most 2^-16 of the largest channel, or of 1; 1 of 1,000 may be
 //   anything
 //             else, as a surface seen edge-on may be lit from either side
+//   noise     sums of squared errors within 2^-12 of themselves
 //   image     no channel off by more than one code, and 1 pixel of 1,000 by that
 // Of fewer than a tenth of the 1,000, or 100, none may differ.
 struct NearlyEqual {

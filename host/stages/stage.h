@@ -23,6 +23,7 @@ enum class Nearly {
   candidate_counts,
   counters,
   radiance,
+  noise,
   image
 };
 

@@ -9,6 +9,7 @@
 #include "interface/lights.h"
 #include "interface/morton.h"
 #include "interface/ploc.h"
+#include "interface/refine.h"
 #include "interface/refit.h"
 #include "interface/scan.h"
 #include "interface/show.h"
@@ -80,6 +81,8 @@
   STAGE(show, ShowArgs, ShowConstants, nearly_radiance)                                \
   STAGE(shade_pixels, ShadePixelsArgs, ShadeConstants, nearly_image)                   \
   STAGE(trace_pixels, TracePixelsArgs, TracePixelsConstants, nearly_pixels)            \
+  STAGE(sample_add, SampleAddArgs, NoConstants, exactly)                               \
+  STAGE(noise_sum, NoiseSumArgs, NoiseSumConstants, nearly_noise)                      \
   STAGE(resolve, ResolveArgs, ResolveConstants, nearly_image)                          \
   STAGE(copy_words, CopyWordsArgs, NoConstants, exactly)                               \
   STAGE(scan_tile_sums, ScanTileSumsArgs, NoConstants, exactly)                        \
@@ -107,6 +110,7 @@ inline constexpr NearlySlot nearly_levels[] = {
 inline constexpr NearlySlot nearly_bounced[] = {{"bounced_rays", Nearly::rays}};
 inline constexpr NearlySlot nearly_shadow_rays[] = {{"shadow_rays", Nearly::rays}};
 inline constexpr NearlySlot nearly_radiance[] = {{"radiance", Nearly::radiance}};
+inline constexpr NearlySlot nearly_noise[] = {{"noise_sums", Nearly::noise}};
 inline constexpr NearlySlot nearly_image[] = {{"image", Nearly::image}};
 inline constexpr NearlySlot nearly_pixels[] = {{"image", Nearly::image}, {"counters", Nearly::counters}};
 }  // namespace stages

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "stages/divide_up.h"
 #include "stages/stages.h"
 
 // What the stages of traces and pictures move at least: "cost" in docs/kernels.md.
@@ -168,6 +169,16 @@ Bytes trace_pixels(const TracePixelsArgs& a, const RunCounts& counts) {
   return Bytes{a.ray_count} * 4 + share(counts.steps / TRACE_PACKET * sizeof(WideNode) +
                                             counts.hits * (4 + sizeof(SurfaceMaterial) + sizeof(Triangle)),
                                         a.ray_count, counts);
+}
+
+Bytes sample_add(const SampleAddArgs& a, const RunCounts&) {
+  const Bytes kept = sizeof(vec3) + sizeof(LuminanceSums);
+  return a.pixel_count * (sizeof(vec3) + kept * (a.sample_index == 0 ? 1 : 2));
+}
+
+Bytes noise_sum(const NoiseSumArgs& a, const RunCounts&) {
+  const Bytes of_value = a.luminance.value ? sizeof(LuminanceSums) : sizeof(float);
+  return a.count * of_value + Bytes{divide_up(a.count, NOISE_SUM_RUN)} * sizeof(float);
 }
 
 Bytes resolve(const ResolveArgs& a, const RunCounts&) { return Bytes{a.ray_count} * (sizeof(vec3) + 4); }

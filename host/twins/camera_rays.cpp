@@ -15,13 +15,34 @@ float radical_inverse(uint index) {
   return static_cast<float>(reversed) / 16777216.0f;
 }
 
+// The second dimension of Sobol's sequence, to 24 bits. Its matrix is Pascal's triangle modulo 2, whose entry
+// (row, column) is odd where the row has no digit that the column has not (Lucas).
+float sobol(uint index) {
+  float value = 0, digit = 0.5f;
+  for (uint row = 0; row < 24; ++row, digit /= 2) {
+    uint parity = 0;
+    for (uint column = row; column < 32; ++column) {
+      if ((row & ~column) == 0) parity ^= index >> column & 1u;
+    }
+    if (parity != 0) value += digit;
+  }
+  return value;
+}
+
+// Adds one half, modulo 1.
+float half_on(float x) { return x < 0.5f ? x + 0.5f : x - 0.5f; }
+
 }  // namespace
 
 void camera_rays(const CameraRaysArgs& args) {
   constexpr float infinity = std::numeric_limits<float>::infinity();
   const Film& film = args.film[0];
-  const float across = (static_cast<float>(args.sample_index) + 0.5f) / static_cast<float>(film.samples);
-  const float down = film.samples == 1 ? 0.5f : radical_inverse(args.sample_index);
+  float across = (static_cast<float>(args.sample_index) + 0.5f) / static_cast<float>(film.samples);
+  float down = film.samples == 1 ? 0.5f : radical_inverse(args.sample_index);
+  if (film.is_sequence != 0) {
+    across = half_on(radical_inverse(args.sample_index));
+    down = half_on(sobol(args.sample_index));
+  }
   for (uint i = 0; i < args.ray_count; ++i) {
     const uvec2 pixel = film_pixel(args.first_ray + i, film);
     const float x = static_cast<float>(pixel.x) + across;

@@ -72,7 +72,7 @@ struct Film {
   vec3 right;
   uint samples;
   vec3 down;
-  uint padding;
+  uint is_sequence;  // 0: samples are a set of so many; 1: the first of a sequence, whatever their number
 };
 
 struct SurfaceMaterial {

@@ -31,7 +31,8 @@ struct Frame {
   uint show = SHOW_COLOR;
   std::uint32_t samples = 1;
   bool keep_hits = true;
-  bool lights = false;  // two, which cast shadows
+  bool lights = false;   // two, which cast shadows
+  bool refines = false;  // as a picture whose error is estimated
 };
 constexpr Frame frames[] = {
     {1000, DeviceBuilder::ploc, true, Walk::binary},
@@ -42,7 +43,8 @@ constexpr Frame frames[] = {
     {SORT_SCAN_TILE + 100, DeviceBuilder::ploc, false, Walk::binary},  // one tile alone sorts without a scan
     {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_DEPTH},
     {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 1, true, true},
-    {300, DeviceBuilder::ploc, true, Walk::wide_single, SHOW_COLOR, 1, true, true}};
+    {300, DeviceBuilder::ploc, true, Walk::wide_single, SHOW_COLOR, 1, true, true},
+    {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 2, true, false, true}};
 constexpr std::size_t scan_and_copy = std::size(frames), inputs = scan_and_copy + 1, vertices = inputs + 1,
                       refits = vertices + 1, instances = refits + 1, chain_count = instances + 1;
 
@@ -67,6 +69,7 @@ Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
   trace_options.show = frame.show;
   trace_options.samples = frame.samples;
   trace_options.keep_hits = frame.keep_hits;
+  trace_options.keep_noise = frame.refines;
   trace_options.lights = arrays.light_counts;
   std::optional<WidePlan> wide;
   if (is_wide(frame.walk)) wide = plan_wide(layout, build, &build);
@@ -83,13 +86,15 @@ Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
                              {}};
   const AnyHitSlots any{trace.rays, layout.add<uint>("any_hits", trace.band_rays), trace.counters, {}};
   LockstepExecutor executor(device, layout);
-  upload_frame(executor, build, trace, arrays,
-               make_film(scene, {}, chain_width, chain_height, frame.samples));
+  Film film = make_film(scene, {}, chain_width, chain_height, frame.samples);
+  film.is_sequence = frame.refines;
+  upload_frame(executor, build, trace, arrays, film);
   upload_show(executor, trace.show, Show::depth, {0, 100});
   auto difference = executor.run([&](Chain& chain) {
     append_build(chain, build);
     if (wide) append_wide(chain, build, *wide);
     append_trace(chain, build, trace);
+    if (frame.refines) append_noise_sum(chain, trace.noise, frame.samples);
     if (!frame.keep_hits) return spoil(chain.steps(), executor);
     append_bounce(chain, build, trace, bounced, trace.band_rays, 1);
     if (frame.walk != Walk::brute_force) append_any_hits(chain, build, any, trace.band_rays, trace_options);
