@@ -10,6 +10,7 @@
 
 layout(local_size_x = CAMERA_RAYS_GROUP) in;
 layout(push_constant, scalar) uniform Push { CameraRaysArgs args; };
+layout(constant_id = 0) const uint CAMERA_RAYS_IS_LIST = 0u;
 
 uint sobol_digits(uint index) {
   uint digits = 0u;
@@ -39,7 +40,9 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= args.ray_count) return;
   Film film = args.film.at[0];
-  vec2 position = film_position(film_pixel(args.first_ray + i, film), film);
+  uint ray = args.first_ray + i;
+  if (CAMERA_RAYS_IS_LIST != 0u) ray = args.pixels.at[i];
+  vec2 position = film_position(film_pixel(ray, film), film);
   vec3 direction = camera_direction(position, film);
   float far = uintBitsToFloat(0x7f800000u);
   store_ray(args.rays, i, Ray(film.position, 0.0, direction, far));

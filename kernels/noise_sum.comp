@@ -5,23 +5,18 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/refine.h"
-#include "lib/selected.glsl"
+#include "lib/pixel_noise.glsl"
 
 layout(local_size_x = NOISE_SUM_GROUP) in;
 layout(push_constant, scalar) uniform Push { NoiseSumArgs args; };
 layout(constant_id = 0) const uint NOISE_OF_PIXELS = 1u;  // 0 where there is no luminance
-
-float pixel_noise(LuminanceSums sums, float samples) {
-  precise float above = sums.sum / samples;
-  precise float mean = sums.first + above;
-  precise float apart = sums.squares - sums.sum * above;
-  precise float variance_of_mean = apart / (samples * (samples - 1.0));
-  precise float relative = variance_of_mean / (mean * mean + NOISE_DARK);
-  return lesser(greater(relative, 0.0), NOISE_MOST);
-}
+layout(constant_id = 1) const uint NOISE_HAS_COUNTS = 0u;
 
 float value(uint i) {
-  return NOISE_OF_PIXELS != 0u ? pixel_noise(args.luminance.at[i], float(args.samples)) : args.values.at[i];
+  if (NOISE_OF_PIXELS == 0u) return args.values.at[i];
+  uint samples = args.samples;
+  if (NOISE_HAS_COUNTS != 0u) samples = args.sample_counts.at[i];
+  return pixel_noise(args.luminance.at[i], float(samples));
 }
 
 float plus(float a, float b) {

@@ -8,8 +8,9 @@
 
 layout(local_size_x = RESOLVE_GROUP) in;
 layout(push_constant, scalar) uniform Push { ResolveArgs args; };
-layout(constant_id = 0) const uint RESOLVE_TONE_CURVE = 0u;  // TONE_
-layout(constant_id = 1) const uint RESOLVE_EXPOSED = 0u;     // 0 where the exposure is 1
+layout(constant_id = 0) const uint RESOLVE_HAS_COUNTS = 0u;
+layout(constant_id = 1) const uint RESOLVE_TONE_CURVE = 0u;  // TONE_
+layout(constant_id = 2) const uint RESOLVE_EXPOSED = 0u;     // 0 where the exposure is 1
 
 vec3 exposed(vec3 radiance) {
   precise vec3 product = radiance * uintBitsToFloat(args.exposure);
@@ -20,7 +21,9 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= args.ray_count) return;
   Film film = args.film.at[0];
-  precise vec3 mean = args.radiance.at[i] / float(film.samples);
+  uint samples = film.samples;
+  if (RESOLVE_HAS_COUNTS != 0u) samples = args.sample_counts.at[i];
+  precise vec3 mean = args.radiance.at[i] / float(samples);
   vec3 colour = mean;
   if (RESOLVE_EXPOSED != 0u) colour = exposed(colour);
   if (RESOLVE_TONE_CURVE != TONE_NONE) colour = tone_mapped(colour, RESOLVE_TONE_CURVE);

@@ -7,6 +7,8 @@
 
 layout(local_size_x = SAMPLE_ADD_GROUP) in;
 layout(push_constant, scalar) uniform Push { SampleAddArgs args; };
+layout(constant_id = 0) const uint SAMPLE_ADD_IS_LIST = 0u;
+layout(constant_id = 1) const uint SAMPLE_ADD_HAS_COUNTS = 0u;
 
 LuminanceSums with(LuminanceSums before, float luminance) {
   precise float above = luminance - before.first;
@@ -26,6 +28,10 @@ void main() {
   vec3 colour = args.sample_radiance.at[i];
   float luminance = exact_dot(vec3(0.2126, 0.7152, 0.0722), colour);
   bool is_first = args.sample_index == 0u;
-  args.radiance.at[i] = is_first ? colour : added(args.radiance.at[i], colour);
-  args.luminance.at[i] = is_first ? LuminanceSums(luminance, 0.0, 0.0) : with(args.luminance.at[i], luminance);
+  uint pixel = i;
+  if (SAMPLE_ADD_IS_LIST != 0u) pixel = args.pixels.at[i];
+  args.radiance.at[pixel] = is_first ? colour : added(args.radiance.at[pixel], colour);
+  args.luminance.at[pixel] =
+      is_first ? LuminanceSums(luminance, 0.0, 0.0) : with(args.luminance.at[pixel], luminance);
+  if (SAMPLE_ADD_HAS_COUNTS != 0u) args.sample_counts.at[pixel] = args.sample_index + 1u;
 }

@@ -1,5 +1,6 @@
 // What the program writes of a picture: linear radiance beside pixels.
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
 #include "support/command.h"
@@ -118,6 +119,54 @@ TEST_F(Command, ARefinedPictureMayBeAnExrAndSaysWhatItReached) {
     expect_refused("render one.obj -o out.png --error=" + std::string(given), 2, "--error");
   }
   expect_refused("render one.obj -o out.png --error 0.1 --runs 2", 2, "--runs");
+}
+
+// Edges and shadows of a lamp, on plain ground: most pixels need few samples.
+TEST_F(Command, AdaptiveSamplesReachAnErrorWithFewerRays) {
+  write("contrast.json", R"({"meshes": {"ground": {"file": "ground.obj"}, "fence": {"file": "fence.obj"}},
+ "objects": [{"mesh": "ground"}, {"mesh": "fence"}],
+ "camera": {"position": [0, 3, 6], "target": [0, 0.5, 0]},
+ "lights": [{"position": [1, 4, -2], "radiance": [12, 12, 12], "shadows": true}]})");
+  write("ground.obj", "v -4 0 -4\nv -4 0 4\nv 4 0 4\nv 4 0 -4\nf 1 2 3 4\n");
+  std::string fence;
+  for (int i = 0; i < 9; ++i) {
+    const std::string x = std::to_string(-2 + 0.5 * i), right = std::to_string(-1.8 + 0.5 * i);
+    fence +=
+        "v " + x + " 0 0\nv " + right + " 0 0\nv " + right + " 1.5 0\nv " + x + " 1.5 0\nf -4 -3 -2 -1\n";
+  }
+  write("fence.obj", fence);
+  struct Reached {
+    ReadExr radiance;
+    double rays, error;
+  };
+  const auto reach = [](const std::string& options) {
+    const Outcome outcome = run("render contrast.json --size 96x72 -o a.exr --json - " + options);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const auto report = nlohmann::json::parse(outcome.out);
+    return Reached{read_exr("a.exr"), report["rays"]["primary"], report["refined"]["error"]};
+  };
+  const Reached uniform = reach("--error 0.01"), adaptive = reach("--error 0.01 --adaptive"),
+                limit = reach("--error 1e-9 --spp 2048");
+  const auto error_of = [&](const Reached& reached) {
+    double sum = 0;
+    for (std::size_t i = 0; i < limit.radiance.rgb.size(); ++i) {
+      const glm::vec3 weights(0.2126f, 0.7152f, 0.0722f);
+      const double is = glm::dot(reached.radiance.rgb[i], weights),
+                   should = glm::dot(limit.radiance.rgb[i], weights);
+      sum += (is - should) * (is - should) / (should * should + 1e-4);
+    }
+    return std::sqrt(sum / static_cast<double>(limit.radiance.rgb.size()));
+  };
+  EXPECT_LE(uniform.error, 0.01);
+  EXPECT_LE(adaptive.error, 0.01);
+  EXPECT_LT(error_of(adaptive), 0.0125);
+  EXPECT_LT(adaptive.rays, uniform.rays / 3);
+  RecordProperty("rays",
+                 std::to_string(uniform.rays) + " uniform, " + std::to_string(adaptive.rays) + " adaptive");
+  RecordProperty("errors",
+                 std::to_string(error_of(uniform)) + " uniform, " + std::to_string(error_of(adaptive)));
+  expect_refused("render one.obj -o out.png --seconds 1 --adaptive", 2, "--adaptive");
+  expect_refused("render one.obj -o out.png --adaptive", 2, "--adaptive");
 }
 
 TEST_F(Command, AnExrIsOfColours) {

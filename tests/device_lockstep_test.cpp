@@ -150,9 +150,16 @@ std::vector<uint> resolved(const std::vector<vec3>& radiance, const ToneMapping&
   executor.upload(trace.radiance, std::span<const vec3>(radiance));
   const auto difference = executor.run([&](Chain& chain) {
     chain.run(stages::resolve,
-              {chain.at(trace.film), chain.at(trace.radiance), chain.at(trace.srgb_thresholds),
-               chain.at(trace.image), 0, count, std::bit_cast<uint>(tone.exposure()), tone.curve},
-              groups_of(count, RESOLVE_GROUP), {tone.curve, tone.exposure() != 1});
+              {chain.at(trace.film),
+               chain.at(trace.radiance),
+               {},
+               chain.at(trace.srgb_thresholds),
+               chain.at(trace.image),
+               0,
+               count,
+               std::bit_cast<uint>(tone.exposure()),
+               tone.curve},
+              groups_of(count, RESOLVE_GROUP), {0, tone.curve, tone.exposure() != 1});
   });
   EXPECT_FALSE(difference) << "pixel " << difference->index << "\ncpu " << difference->cpu << "\ngpu "
                            << difference->gpu;

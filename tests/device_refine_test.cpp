@@ -114,6 +114,59 @@ TEST_F(DeviceRefine, EveryStageIsThatOfItsTwin) {
   }
 }
 
+// Every third pixel, the last first, has two more samples than the others: each has the bits of a picture of
+// as many, by kernels and twins.
+TEST_F(DeviceRefine, PixelsOfAListHaveTheSamplesThatAllWouldHave) {
+  const Scene scene = twice_lit_scene();
+  const SceneArrays arrays = scene_arrays(scene);
+  FrameOptions options{.build = BuildOptions{}, .trace = test_trace_options(refined_width, refined_height)};
+  options.trace.keep_noise = options.trace.adaptive = true;
+  Layout layout(test_device().properties().max_block_bytes);
+  const FramePlan plan = plan_frame(layout, arrays, options);
+  const NoiseSlots& noise = plan.trace.noise;
+  LockstepExecutor executor(test_device(), layout);
+  Film film = make_film(scene, {}, refined_width, refined_height, 4);
+  film.is_sequence = 1;
+  upload_frame(executor, plan, arrays, film);
+  std::vector<uint> list;
+  for (uint pixel = refined_pixels; pixel-- > 0;) {
+    if (pixel % 3 == 0) list.push_back(pixel);
+  }
+  executor.upload({noise.pixels.place, list.size()}, std::span<const uint>(list));
+  const auto difference = executor.run([&](Chain& chain) {
+    append_frame_build(chain, plan);
+    append_trace(chain, plan.tree, plan_of_pass(plan.trace, 0, 2));
+    TracePlan some = plan_of_pass(plan.trace, 2, 4);
+    some.traced_pixels = {noise.pixels.place, list.size()};
+    append_trace(chain, plan.tree, some);
+    append_noise_sum(chain, noise, 4);
+    append_resolved(chain, plan.trace);
+    append_active_pixels(chain, noise, plan.tree.state, 0.02);
+  });
+  ASSERT_FALSE(difference) << difference->stage << " " << difference->slot << "[" << difference->index
+                           << "]\ncpu " << difference->cpu << "\ngpu " << difference->gpu;
+  const RefinedPicture two = refined(scene, {2}), four = refined(scene, {4});
+  const auto radiance = executor.gpu().read(plan.trace.radiance);
+  const auto counts = executor.gpu().read(noise.sample_counts);
+  const auto means = mean_radiance(radiance, refined_width, refined_height, 0, counts);
+  const auto means_of_two = mean_radiance(two.radiance, refined_width, refined_height, 2);
+  const auto means_of_four = mean_radiance(four.radiance, refined_width, refined_height, 4);
+  const auto image = executor.gpu().read(plan.trace.image);
+  for (uint i = 0; i < refined_pixels; ++i) {
+    EXPECT_EQ(counts[i], i % 3 == 0 ? 4u : 2u);
+    EXPECT_EQ(radiance[i], (i % 3 == 0 ? four : two).radiance[i]) << i;
+    EXPECT_TRUE((image[i] == two.image[i] && means[i] == means_of_two[i]) ||
+                (image[i] == four.image[i] && means[i] == means_of_four[i]))
+        << i;
+  }
+  // What is left to do are those beyond the limit, in their order.
+  std::vector<uint> active = executor.gpu().read(noise.pixels);
+  active.resize(executor.gpu().read(noise.active_count)[0]);
+  EXPECT_TRUE(std::ranges::is_sorted(active));
+  EXPECT_GT(active.size(), 100u);
+  EXPECT_LT(active.size(), refined_pixels / 2);
+}
+
 // From the radiance of each sample, in double.
 TEST_F(DeviceRefine, TheErrorIsThatOfItsDefinition) {
   constexpr std::uint32_t samples = 9;
@@ -165,7 +218,7 @@ TEST_F(DeviceRefine, TheErrorIsAboutWhatItIsEstimatedToBe) {
 TEST_F(DeviceRefine, PixelsThatAreNoNumberLeaveTheErrorOfTheOthers) {
   Layout layout(test_device().properties().max_block_bytes);
   constexpr std::uint32_t count = NOISE_SUM_RUN * NOISE_SUM_RUN + 5;  // three levels
-  const NoiseSlots slots = plan_noise(layout, 1, count);
+  const NoiseSlots slots = plan_noise(layout, 1, count, false);
   constexpr float inf = std::numeric_limits<float>::infinity();
   std::vector<LuminanceSums> luminance(count, {0.5f, 0, 0.25f});  // two samples: variance 0.25 of each
   luminance[3] = {inf, std::nanf(""), std::nanf("")};

@@ -55,6 +55,7 @@ class RenderCommand : public Command {
     picture_.trace.keep_radiance = is_exr(files.picture);
     check_options_matter(app, {{"--trace-events", either, NEEDS_DEVICE},
                                {"--validate", either, NEEDS_DEVICE},
+                               {"--adaptive", refine_.error > 0, "--error"},
                                {"--runs", !refine_.any(), "a picture of as many samples as --spp says"},
                                {"--variants", either, NEEDS_DEVICE},
                                {"--lookback", builds, NEEDS_DEVICE_BUILDER},

@@ -259,6 +259,8 @@ void add_refine(CLI::App& app, RefineLimits& refine) {
       "more and more samples, at most as many as --spp says, until so long was spent on tracing");
   add("--error", refine.error, 100,
       "the same until the picture's relative error, estimated from its samples, is no more than this");
+  app.add_flag("--adaptive", refine.adaptive,
+               "of --error: after 16 samples only of pixels whose own error is larger");
 }
 
 void add_effects(CLI::App& app, EffectChanges& effects) {

@@ -36,6 +36,10 @@ std::uint32_t samples_of(const FrameReport& report, const FrameRuns& frame) {
   return report.refined ? report.refined->samples : frame.trace.samples;
 }
 
+double mean_samples(const FrameReport& report, const FrameRuns& frame) {
+  return static_cast<double>(report.rays) / frame.trace.width / frame.trace.height;
+}
+
 double mrays_per_s(const FrameReport& report) {
   return static_cast<double>(report.rays + report.shadow.rays) / report.trace_ms / 1000;
 }
@@ -71,6 +75,7 @@ Json to_json(const FrameReport& report, const Scene& scene, const FrameRuns& fra
   if (report.refined)
     json["refined"] = {{"seconds", report.refined->seconds},
                        {"error", std::isfinite(report.refined->error) ? Json(report.refined->error) : Json()},
+                       {"mean_spp", mean_samples(report, frame)},
                        {"ended_by", name_of(report.refined->ended_by)}};
   if (frame.explains) json["explained"] = to_json(effects_of(scene, frame.effects));
   json["show"] = name_of(report.shown.options.show);
@@ -104,8 +109,8 @@ std::string text_of(const FrameReport& report, const Scene& scene, const FrameRu
   if (report.refined) {
     const Refined& refined = *report.refined;
     const std::string error = refined.samples > 1 ? format("%.3g", refined.error) : "unknown: of one sample";
-    text += format("  refined  %9.1f s   relative error %s, ended by %s\n", refined.seconds, error.c_str(),
-                   name_of(refined.ended_by));
+    text += format("  refined  %9.1f s   relative error %s, ended by %s, %.1f spp on average\n",
+                   refined.seconds, error.c_str(), name_of(refined.ended_by), mean_samples(report, frame));
   }
   if (report.shadow.rays > 0)
     text += format("  shadows  %9llu rays, %llu of them blocked\n",

@@ -76,18 +76,27 @@ double refine_frame(GpuExecutor& executor, const FramePlan& plan, Film& film, Pa
     append(chain);
     return executor.record(chain.steps()).submit_and_wait(piece_limit_seconds);
   };
+  const NoiseSlots& noise = plan.trace.noise;
   const auto pass = [&](std::uint32_t first, std::uint32_t end) {
     double wall_ms = 0;
-    submit_pieces(executor, plan.pieces(plan_of_pass(plan.trace, first, end)), pace, Timestamps::total,
-                  [&](const SubmittedPiece& piece) {
-                    ms += piece.times.total_ms;
-                    wall_ms += piece.times.wall_ms;
-                  });
+    TracePlan trace = plan_of_pass(plan.trace, first, end);
+    if (is_of_some_pixels(limits, first)) {
+      const Recorder::Times times =
+          submit([&](Chain& chain) { append_active_pixels(chain, noise, plan.tree.state, limits.error); });
+      ms += times.total_ms;
+      wall_ms += times.wall_ms;
+      trace.traced_pixels = {noise.pixels.place, executor.read(noise.active_count)[0]};
+      if (trace.traced_pixels.count == 0) return wall_ms / 1000;
+    }
+    submit_pieces(executor, plan.pieces(trace), pace, Timestamps::total, [&](const SubmittedPiece& piece) {
+      ms += piece.times.total_ms;
+      wall_ms += piece.times.wall_ms;
+    });
     return wall_ms / 1000;
   };
   const auto error = [&](std::uint32_t samples) {
-    submit([&](Chain& chain) { append_noise_sum(chain, plan.trace.noise, samples); });
-    return picture_error(executor.read(noise_sum_of(plan.trace.noise))[0], plan.trace.image.count);
+    submit([&](Chain& chain) { append_noise_sum(chain, noise, samples); });
+    return picture_error(executor.read(noise_sum_of(noise))[0], plan.trace.image.count);
   };
   refined = refine(limits, pass, error);
   film.samples = refined->samples;
@@ -199,8 +208,8 @@ void upload_shown(GpuExecutor& executor, const FramePlan& plan, const SceneArray
 void read_picture(const GpuExecutor& executor, const FramePlan& plan, const Film& film, FrameReport& report) {
   report.image = executor.read(plan.trace.image);
   if (plan.trace.options.keep_radiance)
-    report.radiance =
-        mean_radiance(executor.read(plan.trace.radiance), film.width, film.height, film.samples);
+    report.radiance = mean_radiance(executor.read(plan.trace.radiance), film.width, film.height, film.samples,
+                                    executor.read(plan.trace.noise.sample_counts));
   const ShowOptions& show = report.shown.options;
   if (plan.trace.show.range.count > 0)
     report.shown.seen = seen_in(executor.read(plan.trace.show.range)[0], show.show);
@@ -220,6 +229,7 @@ FrameReport measure_frame(CheckedDevice& device, const Scene& scene, const Frame
   options.trace.directional_light = scene.light.radiance != vec3(0);
   options.trace.show = kernel_view(frame.show.show);
   options.trace.keep_noise = frame.refine.any();
+  options.trace.adaptive = frame.refine.adaptive;
   Bvh bvh;
   if (frame.builder.on_device()) {
     options.build = device.build_options(frame.builder.build_options(report.build.morton_bits));

@@ -89,7 +89,15 @@ struct HostTrace {
 Refined refine_on_host(HostTrace& host, Film& film, const RefineLimits& limits) {
   const TracePlan& trace = host.plan.trace;
   const auto pass = [&](std::uint32_t first, std::uint32_t end) {
-    return host.trace(plan_of_pass(trace, first, end));
+    TracePlan some = plan_of_pass(trace, first, end);
+    if (is_of_some_pixels(limits, first)) {
+      Chain chain = host.executor.chain();
+      append_active_pixels(chain, trace.noise, host.plan.tree.state, limits.error);
+      host.run(chain);
+      some.traced_pixels = {trace.noise.pixels.place, host.executor.read(trace.noise.active_count)[0]};
+      if (some.traced_pixels.count == 0) return 0.0;
+    }
+    return host.trace(some);
   };
   const auto error = [&](std::uint32_t samples) {
     Chain chain = host.executor.chain();
@@ -149,6 +157,7 @@ FrameReport measure_host_frame(CheckedDevice* device, const Scene& scene, const 
   FrameOptions options{.trace = frame.trace};
   options.trace.show = kernel_view(frame.show.show);
   options.trace.keep_noise = frame.refine.any();
+  options.trace.adaptive = frame.refine.adaptive;
   options.trace.walk = Walk::binary;  // in its place traces the CPU tracer, which has the tree
   const FramePlan plan = plan_frame(layout, arrays, options);
   CpuExecutor executor(layout);
@@ -166,8 +175,8 @@ FrameReport measure_host_frame(CheckedDevice* device, const Scene& scene, const 
   trace_on_host(executor, plan, bvh, arrays.triangles, frame.refine, film, report);
   report.image = executor.read(plan.trace.image);
   if (plan.trace.options.keep_radiance)
-    report.radiance =
-        mean_radiance(executor.read(plan.trace.radiance), film.width, film.height, film.samples);
+    report.radiance = mean_radiance(executor.read(plan.trace.radiance), film.width, film.height, film.samples,
+                                    executor.read(plan.trace.noise.sample_counts));
   if (plan.trace.show.range.count > 0)
     report.shown.seen = seen_in(executor.read(plan.trace.show.range)[0], frame.show.show);
   if (frame.show.show == Show::boxes)

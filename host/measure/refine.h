@@ -14,6 +14,8 @@ struct RefineLimits {
   double error = 0;                    // as picture_error has it; 0: whatever it is
   std::uint32_t most_samples = 65536;  // a pixel
 
+  bool adaptive = false;  // after 16 samples only of pixels whose own error is larger than `error`
+
   bool any() const { return seconds > 0 || error > 0; }
 };
 
@@ -21,7 +23,7 @@ enum class RefineEnd { seconds, error, samples };
 
 // How far a picture came.
 struct Refined {
-  std::uint32_t samples = 0;  // a pixel
+  std::uint32_t samples = 0;  // a pixel; of an adaptive one the most
   double seconds = 0;         // of tracing, host clock around submit and wait
   double error = 0;           // estimated; infinite of one sample
   RefineEnd ended_by = RefineEnd::samples;
@@ -42,6 +44,11 @@ std::uint32_t samples_of_next_pass(const RefineLimits& limits, Refined& so_far);
 // returns the seconds it took; `error` estimates that of so many samples, at least 2.
 Refined refine(const RefineLimits& limits, const std::function<double(std::uint32_t, std::uint32_t)>& pass,
                const std::function<double(std::uint32_t)>& error);
+
+// Whether a pass that begins with this sample takes it of some pixels only.
+inline bool is_of_some_pixels(const RefineLimits& limits, std::uint32_t first_sample) {
+  return limits.adaptive && first_sample >= REFINE_LEAST_SAMPLES;
+}
 
 // The trace of the samples of one pass, whose pixels are not made yet.
 TracePlan plan_of_pass(const TracePlan& plan, std::uint32_t first_sample, std::uint32_t end_sample);

@@ -66,7 +66,7 @@ std::uint64_t HitPieces::append(Chain& chain, std::uint64_t work) {
 }
 
 std::uint32_t TracePieces::band_rays() const {
-  return std::min(plan_.band_rays, static_cast<std::uint32_t>(plan_.image.count) - band_first_);
+  return std::min(plan_.band_rays, traced_pixels() - band_first_);
 }
 
 void TracePieces::open_range(Chain& chain, std::uint64_t work) {
@@ -74,8 +74,9 @@ void TracePieces::open_range(Chain& chain, std::uint64_t work) {
   if (traces_pixels(plan_.options)) return;
   chain.run(stages::camera_rays,
             {chain.at(plan_.film), chain.at(plan_.rays, range_.first), chain.at(plan_.hits, range_.first),
+             address_or_null(chain, plan_.traced_pixels, band_first_ + range_.first),
              band_first_ + range_.first, range_.count, sample_, 0},
-            groups_of(range_.count, CAMERA_RAYS_GROUP));
+            groups_of(range_.count, CAMERA_RAYS_GROUP), {plan_.traced_pixels.count > 0});
 }
 
 void TracePieces::append_traced_pixels(Chain& chain) const {
@@ -163,7 +164,8 @@ void TracePieces::append_radiance(Chain& chain) const {
     append_all_lights(chain, radiance);
   }
   if (options.keep_noise)
-    append_sample(chain, plan_.noise, range_.first, first_pixel, range_.count, sum, sample_);
+    append_sample(chain, plan_.noise, plan_.radiance,
+                  {range_.first, range_.count, sample_, first_pixel, plan_.traced_pixels});
   if (options.resolves && sample_ + 1 == options.samples)
     append_resolve(chain, plan_, sum, first_pixel, range_.count);
 }

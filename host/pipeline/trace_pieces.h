@@ -82,10 +82,10 @@ class TracePieces {
         band_first_(first_pixel),
         sample_(plan.options.first_sample) {}
 
-  bool done() const { return band_first_ >= plan_.image.count; }
+  bool done() const { return band_first_ >= traced_pixels(); }
   std::uint64_t work() const {
     return work_of(tree_, plan_.options,
-                   plan_.image.count * (plan_.options.samples - plan_.options.first_sample));
+                   std::uint64_t{traced_pixels()} * (plan_.options.samples - plan_.options.first_sample));
   }
 
   // As HitPieces::append.
@@ -93,6 +93,10 @@ class TracePieces {
 
  private:
   std::uint32_t band_rays() const;
+  std::uint32_t traced_pixels() const {
+    return static_cast<std::uint32_t>(plan_.traced_pixels.count > 0 ? plan_.traced_pixels.count
+                                                                    : plan_.image.count);
+  }
   // Those that are in the radiance that this one is added to: none where each is shaded by itself.
   std::uint32_t summed_samples() const { return plan_.options.keep_noise ? 0 : sample_; }
   std::uint64_t append_hits(Chain& chain, std::uint64_t work);

@@ -188,7 +188,7 @@ TracePlan plan_trace(Layout& layout, const TreeSlots& tree, std::uint32_t materi
   plan.hits = layout.add<Hit>("hits", kept_rays);
   const std::uint32_t kept_radiance = keeps_whole_radiance(options) ? pixels : plan.band_rays;
   plan.radiance = layout.add<vec3>("radiance", keeps_radiance(options) ? kept_radiance : 0);
-  if (options.keep_noise) plan.noise = plan_noise(layout, plan.band_rays, pixels);
+  if (options.keep_noise) plan.noise = plan_noise(layout, plan.band_rays, pixels, options.adaptive);
   if (options.show == SHOW_COLOR) plan.lights = plan_lights(layout, options.lights, plan.band_rays);
   if (options.show != SHOW_COLOR) plan.show = plan_show(layout, tree, options.show);
   if (options.show == SHOW_STEPS) plan.ray_steps = layout.add<uint>("ray_steps", plan.band_rays);
@@ -198,10 +198,13 @@ TracePlan plan_trace(Layout& layout, const TreeSlots& tree, std::uint32_t materi
 void append_resolve(Chain& chain, const TracePlan& plan, Vec3Buffer radiance, std::uint32_t first_pixel,
                     std::uint32_t count) {
   const ToneMapping tone = plan.options.show == SHOW_COLOR ? plan.options.tone : ToneMapping{};
+  const Slot<uint>& counts = plan.noise.sample_counts;
+  const bool has_counts = counts.count > 0;
   chain.run(stages::resolve,
-            {chain.at(plan.film), radiance, chain.at(plan.srgb_thresholds), chain.at(plan.image), first_pixel,
-             count, std::bit_cast<uint>(tone.exposure()), tone.curve},
-            groups_of(count, RESOLVE_GROUP), {tone.curve, tone.exposure() != 1});
+            {chain.at(plan.film), radiance, address_or_null(chain, counts, first_pixel),
+             chain.at(plan.srgb_thresholds), chain.at(plan.image), first_pixel, count,
+             std::bit_cast<uint>(tone.exposure()), tone.curve},
+            groups_of(count, RESOLVE_GROUP), {has_counts, tone.curve, tone.exposure() != 1});
 }
 
 void append_resolved(Chain& chain, const TracePlan& plan) {

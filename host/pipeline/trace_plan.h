@@ -44,6 +44,7 @@ struct TraceOptions {
   // Of a picture that is refined by and by. The samples of a pixel are taken from `first_sample` to
   // `samples`, and added to those before it.
   bool keep_noise = false;         // and how far samples are apart, as much again; each is shaded by itself
+  bool adaptive = false;           // some pixels have more samples than others, for 16 bytes a pixel
   std::uint32_t first_sample = 0;  // of those before it radiance is kept
   bool resolves = true;            // pixels are made of the last sample
 };
@@ -103,6 +104,7 @@ struct TracePlan : RaySlots {
   // where that is asked for; none where none is kept.
   Slot<vec3> radiance;
   NoiseSlots noise;
+  Slot<uint> traced_pixels;  // only these of the picture, by their places; empty: all
   LightSlots lights;
   ShowSlots show;
 };

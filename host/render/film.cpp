@@ -44,13 +44,15 @@ Film make_film(const Camera& camera, std::uint32_t width, std::uint32_t height, 
 }
 
 std::vector<vec3> mean_radiance(std::span<const vec3> sums, std::uint32_t width, std::uint32_t height,
-                                std::uint32_t samples) {
+                                std::uint32_t samples, std::span<const uint> sample_counts) {
   std::vector<vec3> means(sums.size());
   std::size_t ray = 0;
   for (std::uint32_t top = 0; top < height; top += FILM_STRIP) {
     for (std::uint32_t x = 0; x < width; ++x) {
-      for (std::uint32_t y = top; y < std::min(top + FILM_STRIP, height); ++y)
-        means[std::size_t{y} * width + x] = sums[ray++] / static_cast<float>(samples);
+      for (std::uint32_t y = top; y < std::min(top + FILM_STRIP, height); ++y) {
+        const uint count = sample_counts.empty() ? samples : sample_counts[ray];
+        means[std::size_t{y} * width + x] = sums[ray++] / static_cast<float>(count);
+      }
     }
   }
   return means;

@@ -18,10 +18,10 @@ Film make_film(const Scene& scene, std::span<const double> camera, std::uint32_t
                std::uint32_t samples);
 Film make_film(const Camera& camera, std::uint32_t width, std::uint32_t height, std::uint32_t samples);
 
-// Radiance summed over so many samples a pixel, in the order of FILM_STRIP, as means in rows from top to
-// bottom. The quotients are those of `resolve`.
+// Radiance summed over so many samples a pixel (or its own count, where there are counts), in the order of
+// FILM_STRIP, as means in rows from top to bottom. The quotients are those of `resolve`.
 std::vector<vec3> mean_radiance(std::span<const vec3> sums, std::uint32_t width, std::uint32_t height,
-                                std::uint32_t samples);
+                                std::uint32_t samples, std::span<const uint> sample_counts = {});
 
 // A ray through the centre of each pixel, in the order of FILM_STRIP.
 std::vector<Ray> rays_through(const Film& film);

@@ -16,7 +16,7 @@ namespace coppice {
 //   a
 //             few roundings wide); 1 of 1,000 may be anything else, as a ray that meets an edge may go either
 //             way; and of two triangles at the same t 1 of 100 may be the other one
-//   any_hits  0 or 1; 1 of 1,000 may be the other one
+//   any_hits  0 or 1 (marks, too); 1 of 1,000 may be the other one
 //   hit_instances  1 of 100 may be another one
 //   candidates  the same primitive, t_enter within 2^-16 of itself; 1 of 100 may be anything else, as
 //             neighbours may change places, and all that follow move up where one is missing

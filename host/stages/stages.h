@@ -60,7 +60,7 @@
   STAGE(refit_appeared, RefitAppearedArgs, NoConstants, exactly)                       \
   STAGE(tree_areas, TreeAreasArgs, NoConstants, exactly)                               \
   STAGE(tree_area_sum, TreeAreaSumArgs, NoConstants, exactly)                          \
-  STAGE(camera_rays, CameraRaysArgs, NoConstants, nearly_rays)                         \
+  STAGE(camera_rays, CameraRaysArgs, CameraRaysConstants, nearly_rays)                 \
   STAGE(trace_misses, TraceMissesArgs, NoConstants, exactly)                           \
   STAGE(trace_closest, TraceClosestArgs, TraceClosestConstants, nearly_hits)           \
   STAGE(trace_wide, TraceWideArgs, TraceWideConstants, nearly_hits)                    \
@@ -81,8 +81,10 @@
   STAGE(show, ShowArgs, ShowConstants, nearly_radiance)                                \
   STAGE(shade_pixels, ShadePixelsArgs, ShadeConstants, nearly_image)                   \
   STAGE(trace_pixels, TracePixelsArgs, TracePixelsConstants, nearly_pixels)            \
-  STAGE(sample_add, SampleAddArgs, NoConstants, exactly)                               \
+  STAGE(sample_add, SampleAddArgs, SampleAddConstants, exactly)                        \
   STAGE(noise_sum, NoiseSumArgs, NoiseSumConstants, nearly_noise)                      \
+  STAGE(noise_marks, NoiseMarksArgs, NoConstants, nearly_marks)                        \
+  STAGE(noise_pixels, NoisePixelsArgs, NoConstants, exactly)                           \
   STAGE(resolve, ResolveArgs, ResolveConstants, nearly_image)                          \
   STAGE(copy_words, CopyWordsArgs, NoConstants, exactly)                               \
   STAGE(scan_tile_sums, ScanTileSumsArgs, NoConstants, exactly)                        \
@@ -111,6 +113,7 @@ inline constexpr NearlySlot nearly_bounced[] = {{"bounced_rays", Nearly::rays}};
 inline constexpr NearlySlot nearly_shadow_rays[] = {{"shadow_rays", Nearly::rays}};
 inline constexpr NearlySlot nearly_radiance[] = {{"radiance", Nearly::radiance}};
 inline constexpr NearlySlot nearly_noise[] = {{"noise_sums", Nearly::noise}};
+inline constexpr NearlySlot nearly_marks[] = {{"noise_marks", Nearly::any_hits}};
 inline constexpr NearlySlot nearly_image[] = {{"image", Nearly::image}};
 inline constexpr NearlySlot nearly_pixels[] = {{"image", Nearly::image}, {"counters", Nearly::counters}};
 }  // namespace stages

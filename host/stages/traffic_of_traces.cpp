@@ -181,6 +181,15 @@ Bytes noise_sum(const NoiseSumArgs& a, const RunCounts&) {
   return a.count * of_value + Bytes{divide_up(a.count, NOISE_SUM_RUN)} * sizeof(float);
 }
 
+Bytes noise_marks(const NoiseMarksArgs& a, const RunCounts&) {
+  return Bytes{a.pixel_count} * (sizeof(LuminanceSums) + 2 * sizeof(uint));
+}
+
+// Nothing of the list, whose length is not known here.
+Bytes noise_pixels(const NoisePixelsArgs& a, const RunCounts&) {
+  return Bytes{a.pixel_count} * 2 * sizeof(uint);
+}
+
 Bytes resolve(const ResolveArgs& a, const RunCounts&) { return Bytes{a.ray_count} * (sizeof(vec3) + 4); }
 
 }  // namespace coppice::traffic

@@ -44,7 +44,7 @@ void camera_rays(const CameraRaysArgs& args) {
     down = half_on(sobol(args.sample_index));
   }
   for (uint i = 0; i < args.ray_count; ++i) {
-    const uvec2 pixel = film_pixel(args.first_ray + i, film);
+    const uvec2 pixel = film_pixel(args.pixels.value ? args.pixels[i] : args.first_ray + i, film);
     const float x = static_cast<float>(pixel.x) + across;
     const float y = static_cast<float>(pixel.y) + down;
     args.rays[i] = {film.position, 0.0f, film_direction(film, x, y), infinity};

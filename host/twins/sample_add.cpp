@@ -8,13 +8,15 @@ void sample_add(const SampleAddArgs& args) {
     float y = 0.2126f * colour.x;
     y += 0.7152f * colour.y;
     y += 0.0722f * colour.z;
+    const uint pixel = args.pixels.value ? args.pixels[i] : i;
+    if (args.sample_counts.value) args.sample_counts[pixel] = args.sample_index + 1;
     if (args.sample_index == 0) {
-      args.radiance[i] = colour;
-      args.luminance[i] = {y, 0, 0};
+      args.radiance[pixel] = colour;
+      args.luminance[pixel] = {y, 0, 0};
       continue;
     }
-    args.radiance[i] += colour;
-    LuminanceSums& sums = args.luminance[i];
+    args.radiance[pixel] += colour;
+    LuminanceSums& sums = args.luminance[pixel];
     const float difference = y - sums.first;
     sums.sum += difference;
     sums.squares += difference * difference;

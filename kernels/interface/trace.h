@@ -108,9 +108,10 @@ INTERFACE_BUFFER(Vec3Buffer, vec3, 4)
 
 struct CameraRaysArgs {
   READS(FilmBuffer) film;
-  RayBuffer rays;  // ray_count
-  HitBuffer hits;  // ray_count, set to misses
-  uint first_ray;  // of the picture
+  RayBuffer rays;            // ray_count
+  HitBuffer hits;            // ray_count, set to misses
+  READS(UintBuffer) pixels;  // ray_count: rays of the picture; null: those from first_ray on
+  uint first_ray;            // of the picture
   uint ray_count;
   uint sample_index;
   uint padding;
@@ -294,6 +295,7 @@ struct TracePixelsArgs {
 struct ResolveArgs {
   READS(FilmBuffer) film;
   READS(Vec3Buffer) radiance;         // one a ray
+  READS(UintBuffer) sample_counts;    // one a ray; null: all have as many as the film says
   READS(UintBuffer) srgb_thresholds;  // 256 floats as bits: the least linear value of each 8-bit sRGB code
   UintBuffer image;                   // RGBA8, red in the low byte, rows top to bottom
   uint first_ray;
@@ -335,7 +337,12 @@ struct TraceBruteForceConstants {
   uint triangle_test;
 };
 
+struct CameraRaysConstants {
+  uint is_list;  // 0 where there are no pixels
+};
+
 struct ResolveConstants {
+  uint has_counts;  // 0 where there are no sample_counts
   uint tone_curve;
   uint is_exposed;  // 0 where the exposure is 1
 };

@@ -69,7 +69,7 @@ Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
   trace_options.show = frame.show;
   trace_options.samples = frame.samples;
   trace_options.keep_hits = frame.keep_hits;
-  trace_options.keep_noise = frame.refines;
+  trace_options.keep_noise = trace_options.adaptive = frame.refines;
   trace_options.lights = arrays.light_counts;
   std::optional<WidePlan> wide;
   if (is_wide(frame.walk)) wide = plan_wide(layout, build, &build);
@@ -94,7 +94,10 @@ Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
     append_build(chain, build);
     if (wide) append_wide(chain, build, *wide);
     append_trace(chain, build, trace);
-    if (frame.refines) append_noise_sum(chain, trace.noise, frame.samples);
+    if (frame.refines) {
+      append_noise_sum(chain, trace.noise, frame.samples);
+      append_active_pixels(chain, trace.noise, build.state, 0.01);
+    }
     if (!frame.keep_hits) return spoil(chain.steps(), executor);
     append_bounce(chain, build, trace, bounced, trace.band_rays, 1);
     if (frame.walk != Walk::brute_force) append_any_hits(chain, build, any, trace.band_rays, trace_options);
