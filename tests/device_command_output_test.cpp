@@ -146,7 +146,7 @@ TEST_F(Command, AdaptiveSamplesReachAnErrorWithFewerRays) {
     return Reached{read_exr("a.exr"), report["rays"]["primary"], report["refined"]["error"]};
   };
   const Reached uniform = reach("--error 0.01"), adaptive = reach("--error 0.01 --adaptive"),
-                limit = reach("--error 1e-9 --spp 2048");
+                limit = reach("--error 1e-9 --spp 1024");
   const auto error_of = [&](const Reached& reached) {
     double sum = 0;
     for (std::size_t i = 0; i < limit.radiance.rgb.size(); ++i) {

@@ -1,6 +1,8 @@
 // Pictures that are refined pass by pass: the same bits however many samples a pass has, each stage in
 // lockstep with its twin, and an estimate of the error that is what it says.
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "measure/refine.h"
 #include "render/frame.h"

@@ -20,7 +20,8 @@ vec3 tone_aces(vec3 colour) {
   precise vec3 over = v * (v + 0.0245786) - 0.000090537;
   precise vec3 under = v * (0.983729 * v + 0.4329510) + 0.238081;
   precise vec3 fitted = over / under;
-  return vec3(exact_dot(vec3(1.60475, -0.53108, -0.07367), fitted), exact_dot(vec3(-0.10208, 1.10813, -0.00605), fitted),
+  return vec3(exact_dot(vec3(1.60475, -0.53108, -0.07367), fitted),
+              exact_dot(vec3(-0.10208, 1.10813, -0.00605), fitted),
               exact_dot(vec3(-0.00327, -0.07276, 1.07602), fitted));
 }
 
