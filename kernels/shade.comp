@@ -9,8 +9,10 @@ layout(local_size_x = SHADE_GROUP) in;
 layout(push_constant, scalar) uniform Push { ShadeArgs args; };
 layout(constant_id = 0) const uint SHADE_DIRECTIONAL_LIGHT = 1u;  // 0 where the scene has none
 
-vec3 surface(Ray ray, uint index, Lighting lighting) {
-  SurfaceMaterial material = args.materials.at[args.material_index.at[index]];
+#include "lib/material_of.glsl"
+
+vec3 surface(uint i, Ray ray, uint index, Lighting lighting) {
+  SurfaceMaterial material = material_of(i, index);
   if (SHADE_DIRECTIONAL_LIGHT == 0u) return material.ambient;
   return lit(material, args.triangles.at[index], ray.direction, lighting);
 }
@@ -21,7 +23,7 @@ void main() {
   Ray ray = load_ray(args.rays, i);
   uint index = args.hits.at[i].triangle;
   Lighting lighting = args.lighting.at[0];
-  vec3 colour = index == NO_TRIANGLE ? sky(ray.direction, lighting) : surface(ray, index, lighting);
+  vec3 colour = index == NO_TRIANGLE ? sky(ray.direction, lighting) : surface(i, ray, index, lighting);
   precise vec3 sum = colour;
   if (args.sample_index != 0u) sum = args.radiance.at[i] + colour;
   args.radiance.at[i] = sum;

@@ -13,6 +13,8 @@ layout(push_constant, scalar) uniform Push { ShadeLightsArgs args; };
 layout(constant_id = 0) const uint SHADE_SHADOWS = 1u;
 layout(constant_id = 1) const uint SHADE_POINTS = 1u;
 
+#include "lib/material_of.glsl"
+
 // As scaled by its largest component, so that squares stay in range.
 float length_of(vec3 v) {
   vec3 size = abs(v);
@@ -50,7 +52,7 @@ void main() {
   Hit hit = load_hit(args.hits, i);
   if (hit.triangle == NO_TRIANGLE || !is_reached(i)) return;
   Triangle triangle = args.triangles.at[hit.triangle];
-  vec3 diffuse = args.materials.at[args.material_index.at[hit.triangle]].diffuse;
+  vec3 diffuse = material_of(i, hit.triangle).diffuse;
   vec3 normal = normal_of(triangle);
   if (exact_dot(normal, args.rays.at[i].direction) > 0.0) normal = -normal;
   vec3 point = hit_point(triangle, hit.u, hit.v);

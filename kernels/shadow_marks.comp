@@ -10,8 +10,10 @@
 layout(local_size_x = SHADOW_MARKS_GROUP) in;
 layout(push_constant, scalar) uniform Push { ShadowMarksArgs args; };
 
-bool reflects(uint triangle, LightSource light) {
-  vec3 diffuse = args.materials.at[args.material_index.at[triangle]].diffuse;
+#include "lib/material_of.glsl"
+
+bool reflects(uint ray, uint triangle, LightSource light) {
+  vec3 diffuse = material_of(ray, triangle).diffuse;
   vec3 least = min(diffuse, light.radiance);  // in some channel both are there
   return max(max(least.x, least.y), least.z) > 0.0;
 }
@@ -29,6 +31,6 @@ void main() {
   Hit hit = load_hit(args.hits, i);
   LightSource light = args.lights.at[args.light];
   bool marked = hit.triangle != NO_TRIANGLE;
-  if (marked) marked = reflects(hit.triangle, light) && faces(hit, args.rays.at[i].direction, light);
+  if (marked) marked = reflects(i, hit.triangle, light) && faces(hit, args.rays.at[i].direction, light);
   args.marks.at[i] = marked ? 1u : 0u;
 }

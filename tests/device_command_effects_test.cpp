@@ -82,7 +82,7 @@ TEST_F(CommandEffects, ExplainNamesWhatCalledForEach) {
 
 TEST_F(CommandEffects, TheTableHasTheCostOfWhatIsOnAndZeroesForTheRest) {
   const json rich = report_of("effects scene.json")["effects"];
-  ASSERT_EQ(rich.size(), 2u);
+  ASSERT_EQ(rich.size(), 3u);
   EXPECT_EQ(rich[0]["name"], "lights");
   EXPECT_GT(rich[0]["rays"], 0) << "one of the points casts shadows";
   const json& shadows = rich[1];
@@ -103,6 +103,30 @@ TEST_F(CommandEffects, TheTableHasTheCostOfWhatIsOnAndZeroesForTheRest) {
   const Outcome text = run("effects scene.json --size 16x16");
   EXPECT_NE(text.out.find("shadow_marks x 2, scan_tile_sums x 2, prefix_scan x 4, "), std::string::npos)
       << text.out;
+}
+
+TEST_F(CommandEffects, ATextureThatIsMissingIsNamedAndACheckerIsSeen) {
+  write("wall.mtl", "newmtl wall\nKd 1 1 1\nmap_Kd gone.png\n");
+  write("wall.obj",
+        "mtllib wall.mtl\nusemtl wall\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0.5 1\nf 1/1 2/2 "
+        "3/3\n");
+  const Outcome outcome = run("render wall.obj -o out.png --size 32x32 --explain");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("textures on   called for by material 'wall', which has gone.png\n"),
+            std::string::npos)
+      << outcome.out;
+  EXPECT_NE(
+      outcome.err.find("gone.png: no such file, a checker takes its place as map_Kd of material 'wall'\n"),
+      std::string::npos)
+      << outcome.err;
+  const Outcome without = run("render wall.obj -o out.png --size 32x32 --effects=-textures");
+  EXPECT_EQ(without.err.find("gone.png"), std::string::npos) << without.err;
+  EXPECT_NE(report_of("render wall.obj -o out.png")["image_hash"],
+            report_of("render wall.obj -o out.png --effects=-textures")["image_hash"]);
+  const json cost = report_of("effects wall.obj")["effects"][2];
+  EXPECT_EQ(cost["name"], "textures");
+  EXPECT_EQ(cost["kernels"], json({"texture_hits", "shade", "resolve"}));
+  EXPECT_GT(cost["bytes"], 0);
 }
 
 TEST_F(CommandEffects, AnimateAndLockstepTakeThem) {

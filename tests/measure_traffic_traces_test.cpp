@@ -82,6 +82,26 @@ TEST(Traffic, OfLightsAndShadows) {
   EXPECT_EQ(bytes["shade_lights"], plain + 2 * (1000 * 4 + 250 * 4) + 200 * 8 + 160 * 112);
 }
 
+// 1,000 rays, of which 250 hit something.
+TEST(Traffic, OfTextures) {
+  Layout layout;
+  const TreeSlots tree = plan_tree(layout, 100, 199);
+  const TracePlan plan =
+      plan_trace(layout, tree, 1, {.width = 40, .height = 25, .textures = {.textures = 1, .texels = 64}});
+  Chain chain(nowhere);
+  append_trace(chain, tree, plan);
+  RunCounts counts;
+  counts.rays = 1000, counts.hits = 250, counts.steps = 4000;
+  std::uint64_t bytes = 0;
+  for (const Step& step : chain.steps()) {
+    if (stage_of(step) && stage_of(step)->name == std::string_view("texture_hits"))
+      bytes += modelled_bytes(step, counts);
+  }
+  // Of a hit: the rest of it 12, direction 12, triangle 36, material 4 + 36 + 8, header 48, texels 32,
+  // corners 64, and what is written 24.
+  EXPECT_EQ(bytes, 1000u * 4 + 250 * 276);
+}
+
 TEST(Traffic, OfATraceOfTwoSamples) {
   Layout layout;
   const TreeSlots tree = plan_tree(layout, 100, 199);

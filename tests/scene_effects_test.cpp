@@ -42,6 +42,7 @@ TEST(Effects, ThePlainSceneCallsForNothing) {
         with_light({{"direction", {1, 1, 1}}, {"radiance", {1, 2, 3}}})}) {
     EXPECT_EQ(caller(scene, Effect::lights), "");
     EXPECT_EQ(caller(scene, Effect::shadows), "");
+    EXPECT_EQ(caller(scene, Effect::textures), "");
     EXPECT_TRUE(shaded_lights(scene, effects_of(scene)).empty());
   }
 }
@@ -58,6 +59,19 @@ TEST(Effects, LightsCallForThemByTheirPlaceInTheFile) {
   dark["radiance"] = {0, 0, 0};
   const Scene unlit = with_lights({sun, dark});  // a light that lights nothing calls for nothing
   EXPECT_EQ(caller(unlit, Effect::lights) + caller(unlit, Effect::shadows), "");
+}
+
+TEST(Effects, AMapOfColoursThatATriangleHasCallsForTextures) {
+  Scene scene = with_light();
+  scene.materials = {Material{}, Material{}, Material{}};
+  scene.materials[1].name = "wall";
+  scene.materials[1].emission_map.name = "glow.png";
+  scene.materials[2].diffuse_map.name = "unused.png";
+  scene.materials[0].bump_map.name = "bump.png";  // no colour
+  EXPECT_EQ(caller(scene, Effect::textures), "");
+  scene.material_index.back() = 1;
+  EXPECT_EQ(caller(scene, Effect::textures), "material 'wall', which has glow.png");
+  EXPECT_TRUE(effects_of(scene).needs_one_level());
 }
 
 TEST(Effects, WhatIsShadedHasThoseThatCastShadowsLast) {
@@ -109,7 +123,7 @@ TEST(Effects, ChangesThatNobodyKnowsAreNamed) {
     }
     return "";
   };
-  const std::string all = " is no + or - and an effect behind it: there are lights, shadows";
+  const std::string all = " is no + or - and an effect behind it: there are lights, shadows, textures";
   EXPECT_EQ(error_of("+fog"), "'+fog'" + all);
   EXPECT_EQ(error_of("shadows"), "'shadows'" + all);
   EXPECT_EQ(error_of("+"), "'+'" + all);
@@ -175,6 +189,25 @@ TEST(Effects, EachRecordsItsStagesAndNoOther) {
   EXPECT_GT(shadows.device_bytes, lights.device_bytes);
   const RecordedPicture wide = recorded(with_lights({shadowed(sun)}), "", 1, Walk::wide_packets);
   EXPECT_NE(kernels_of(wide).find("trace_wide_any*1"), std::string::npos);
+}
+
+TEST(Effects, TexturesRecordOneStageMoreAndOpenNoImageWhereTheyAreOff) {
+  Scene scene = with_light();
+  scene.materials[scene.material_index[0]].diffuse_map.name = "no such image";
+  const RecordedPicture textured = recorded(scene);
+  EXPECT_EQ(kernels_of(textured), "camera_rays*1 trace_closest*1 texture_hits*1 shade*1 resolve*1");
+  EXPECT_EQ(textured.effect_steps[2], 1u);
+  EXPECT_TRUE(has_slot(textured, "texels"));
+  EXPECT_EQ(scene_arrays(scene, effects_of(scene)).textures.warnings.size(), 1u);
+  const RecordedPicture without = recorded(scene, "-textures");
+  EXPECT_EQ(kernels_of(without), "camera_rays*1 trace_closest*1 shade_pixels*1");
+  EXPECT_EQ(without.effect_steps[2], 0u);
+  for (const char* slot : {"textured_materials", "material_maps", "texture_headers", "texels",
+                           "srgb_to_linear", "corners", "hit_materials"}) {
+    EXPECT_TRUE(has_slot(textured, slot)) << slot;
+    EXPECT_FALSE(has_slot(without, slot)) << slot;
+  }
+  EXPECT_TRUE(scene_arrays(scene).textures.empty()) << "for trees alone";
 }
 
 TEST(Effects, ViewsThatShowNoColoursHaveNone) {

@@ -182,7 +182,8 @@ TEST(Nearly, OnlyStagesThatDivideOrTakeRootsAreNearlyEqual) {
     const bool traces = name.starts_with("trace_") && name != "trace_misses";  // which writes constants
     const bool may = traces || name == "camera_rays" || name == "bounce_rays" || name == "shade" ||
                      name == "resolve" || name == "shade_pixels" || name == "show" || name == "shadow_rays" ||
-                     name == "noise_sum" || name == "noise_marks" || name == "shade_lights";
+                     name == "noise_sum" || name == "noise_marks" || name == "shade_lights" ||
+                     name == "texture_hits";
     EXPECT_EQ(!stage->nearly.empty(), may) << name;
   }
 }

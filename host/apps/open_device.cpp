@@ -51,15 +51,16 @@ Scene open_for_effects(const SceneOptions& options, const BuilderChoice& builder
     return open_scene_with_room(scene, on_device ? &device.options : nullptr, build_of(builder), print_note);
   };
   Scene scene = open(options);
-  if (!scene.instances.empty() && effects_of(scene, options.effects).has(Effect::shadows)) {
+  const EffectSet effects = effects_of(scene, options.effects);
+  if (!scene.instances.empty() && effects.needs_one_level()) {
     const bool moves = scene.swarm || scene.motion;
     SceneOptions one_level = options;
     one_level.keep_instances = false;
     scene = open(one_level);
     if (moves && !scene.motion && !may_stand_still)
       throw InputError("scene '" + scene.name +
-                       "' has instances that move, through which no shadow rays are traced "
-                       "(--effects=-shadows goes without)");
+                       "' has instances that move, which take neither shadows nor textures "
+                       "(--effects=-shadows,-textures goes without)");
   }
   print_warnings(scene);
   return scene;

@@ -14,6 +14,7 @@ using Kernel = RecordedPicture::Kernel;
 
 // Whether a step is there for this effect alone.
 bool belongs_to(const Step& step, Effect effect) {
+  if (effect == Effect::textures) return stage_of(step) == &stages::texture_hits;
   const ShadeLightsArgs* const shading = args_of(step, stages::shade_lights);
   if (shading) return (shading->marks.value != 0) == (effect == Effect::shadows);
   if (effect != Effect::shadows) return false;

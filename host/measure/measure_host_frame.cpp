@@ -142,6 +142,7 @@ FrameReport measure_host_frame(CheckedDevice* device, const Scene& scene, const 
                                const Note& note) {
   const SceneArrays arrays = scene_arrays(scene, effects_of(scene, frame.effects));
   FrameReport report;
+  for (const std::string& warning : arrays.textures.warnings) note(warning);
   report.trace_device = "host CPU";
   report.build = report_for(frame.builder, scene, arrays.triangles, note);
   Bvh bvh;

@@ -105,26 +105,47 @@ std::uint64_t TracePieces::append_hits(Chain& chain, std::uint64_t work) {
 
 // Of instances a triangle and a material each ray.
 TracePieces::Surfaces TracePieces::surfaces(const Chain& chain) const {
-  if (!levels_) return {chain.at(tree_.triangles), chain.at(plan_.material_index)};
+  const auto materials = chain.at(plan_.materials);
+  if (!levels_) return {chain.at(tree_.triangles), chain.at(plan_.material_index), materials};
   return {chain.at(levels_->hits.triangles, range_.first),
-          chain.at(levels_->hits.material_index, range_.first)};
+          chain.at(levels_->hits.material_index, range_.first), materials};
+}
+
+// Of textures a material each ray.
+TracePieces::Surfaces TracePieces::textured_surfaces(const Chain& chain) const {
+  Surfaces result = surfaces(chain);
+  if (plan_.options.textures.textures > 0)
+    result = {result.triangles, {}, chain.at(plan_.textures.hit_materials, range_.first)};
+  return result;
+}
+
+void TracePieces::append_textures(Chain& chain) const {
+  if (plan_.options.textures.textures == 0) return;
+  const TextureSlots& slots = plan_.textures;
+  const auto [triangles, material_index, materials] = surfaces(chain);
+  chain.run(stages::texture_hits,
+            {chain.at(plan_.film), triangles, material_index, chain.at(slots.materials), chain.at(slots.maps),
+             chain.at(slots.headers), chain.at(slots.texels), chain.at(slots.srgb_to_linear),
+             chain.at(slots.corners), chain.at(plan_.rays, range_.first), chain.at(plan_.hits, range_.first),
+             chain.at(slots.hit_materials, range_.first), range_.count, 0},
+            groups_of(range_.count, TEXTURE_HITS_GROUP));
 }
 
 void TracePieces::append_shade(Chain& chain, Vec3Buffer radiance) const {
-  const auto [triangles, material_index] = surfaces(chain);
-  chain.run(stages::shade,
-            {triangles, material_index, chain.at(plan_.materials), chain.at(plan_.lighting),
-             chain.at(plan_.rays, range_.first), chain.at(plan_.hits, range_.first), radiance, range_.count,
-             summed_samples()},
-            groups_of(range_.count, SHADE_GROUP),
-            {plan_.options.directional_light && plan_.options.lights.lights == 0});
+  const auto [triangles, material_index, materials] = textured_surfaces(chain);
+  chain.run(
+      stages::shade,
+      {triangles, material_index, materials, chain.at(plan_.lighting), chain.at(plan_.rays, range_.first),
+       chain.at(plan_.hits, range_.first), radiance, range_.count, summed_samples()},
+      groups_of(range_.count, SHADE_GROUP),
+      {plan_.options.directional_light && plan_.options.lights.lights == 0});
 }
 
 void TracePieces::append_all_lights(Chain& chain, Vec3Buffer radiance) const {
   if (plan_.options.lights.lights == 0) return;
-  const auto [triangles, material_index] = surfaces(chain);
+  const auto [triangles, material_index, materials] = textured_surfaces(chain);
   append_lights(chain, tree_, plan_.lights,
-                {triangles, material_index, chain.at(plan_.materials), chain.at(plan_.rays, range_.first),
+                {triangles, material_index, materials, chain.at(plan_.rays, range_.first),
                  chain.at(plan_.hits, range_.first), radiance, range_.count},
                 plan_.options);
 }
@@ -144,11 +165,11 @@ void TracePieces::append_show(Chain& chain, Vec3Buffer radiance) const {
 }
 
 void TracePieces::append_pixels(Chain& chain) const {
-  const auto [triangles, material_index] = surfaces(chain);
+  const auto [triangles, material_index, materials] = surfaces(chain);
   chain.run(stages::shade_pixels,
-            {chain.at(plan_.film), triangles, material_index, chain.at(plan_.materials),
-             chain.at(plan_.lighting), chain.at(plan_.hits, range_.first), chain.at(plan_.srgb_thresholds),
-             chain.at(plan_.image), band_first_ + range_.first, range_.count},
+            {chain.at(plan_.film), triangles, material_index, materials, chain.at(plan_.lighting),
+             chain.at(plan_.hits, range_.first), chain.at(plan_.srgb_thresholds), chain.at(plan_.image),
+             band_first_ + range_.first, range_.count},
             groups_of(range_.count, SHADE_PIXELS_TILE), {plan_.options.directional_light});
 }
 
@@ -160,6 +181,7 @@ void TracePieces::append_radiance(Chain& chain) const {
   if (options.show != SHOW_COLOR) {
     append_show(chain, radiance);
   } else {
+    append_textures(chain);
     append_shade(chain, radiance);
     append_all_lights(chain, radiance);
   }

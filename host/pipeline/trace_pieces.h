@@ -106,10 +106,13 @@ class TracePieces {
   struct Surfaces {
     TriangleBuffer triangles;
     UintBuffer material_index;
+    SurfaceMaterialBuffer materials;
   };
   Surfaces surfaces(const Chain& chain) const;
+  Surfaces textured_surfaces(const Chain& chain) const;
   void append_pixels(Chain& chain) const;
   void append_traced_pixels(Chain& chain) const;
+  void append_textures(Chain& chain) const;
   void append_radiance(Chain& chain) const;
   void append_shade(Chain& chain, Vec3Buffer radiance) const;
   void append_all_lights(Chain& chain, Vec3Buffer radiance) const;

@@ -8,6 +8,7 @@
 #include "pipeline/lights.h"
 #include "pipeline/ray_filter.h"
 #include "pipeline/refine.h"
+#include "pipeline/textures.h"
 #include "pipeline/walk.h"
 
 namespace coppice {
@@ -37,6 +38,7 @@ struct TraceOptions {
   std::uint32_t box_test = BOX_ROBUST;
   bool directional_light = true;    // what the scene calls for
   LightCounts lights{};             // of colours
+  TextureCounts textures{};         // of colours
   std::uint32_t show = SHOW_COLOR;  // SHOW_; brute force has no steps
   bool keep_hits = false;           // the rays of the last sample and their hits are asked for
   ToneMapping tone{};               // of colours
@@ -106,6 +108,7 @@ struct TracePlan : RaySlots {
   NoiseSlots noise;
   Slot<uint> traced_pixels;  // only these of the picture, by their places; empty: all
   LightSlots lights;
+  TextureSlots textures;
   ShowSlots show;
 };
 

@@ -13,6 +13,8 @@ namespace {
 FramePlan plan_instanced_frame(Layout& layout, const SceneArrays& scene, const FrameOptions& options) {
   if (options.trace.lights.shadows > 0)
     throw std::invalid_argument("shadows are traced through trees of one level");
+  if (options.trace.textures.textures > 0)
+    throw std::invalid_argument("textures lie on triangles of one level");
   if (!options.build || options.trace.walk != Walk::binary)
     throw std::invalid_argument("instances are built on the device and walked through binary trees");
   std::vector<std::uint32_t> counts;
@@ -39,7 +41,9 @@ FramePlan plan_instanced_frame(Layout& layout, const SceneArrays& scene, const F
 
 FramePlan plan_frame(Layout& layout, const SceneArrays& scene, const FrameOptions& given) {
   FrameOptions options = given;
-  options.trace.lights = options.trace.show == SHOW_COLOR ? scene.light_counts : LightCounts{};
+  const bool colours = options.trace.show == SHOW_COLOR;
+  options.trace.lights = colours ? scene.light_counts : LightCounts{};
+  options.trace.textures = colours ? scene.texture_counts() : TextureCounts{};
   if (options.trace.lights.shadows > 0 && options.trace.walk == Walk::brute_force)
     throw std::invalid_argument("shadows are traced through a tree");
   if (!scene.mesh_index.empty()) return plan_instanced_frame(layout, scene, options);

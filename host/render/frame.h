@@ -31,9 +31,9 @@ struct FramePlan {
   }
 };
 
-// The lights are those of the scene, whatever the options say. Throws LayoutError if a slot does not fit a
-// block, and std::invalid_argument for instances with a tree of the host, a wide one or shadows, and for
-// shadows without a tree.
+// The lights and textures are those of the scene, whatever the options say. Throws LayoutError if a slot does
+// not fit a block, and std::invalid_argument for instances with a tree of the host, a wide one, shadows or
+// textures, and for shadows without a tree.
 FramePlan plan_frame(Layout& layout, const SceneArrays& scene, const FrameOptions& options);
 
 // The parts of a frame: nothing where there is nothing to do.
@@ -45,6 +45,17 @@ void append_frame_meshes(Chain& chain, const FramePlan& plan);
 
 // All of it: triangles to picture.
 void append_frame(Chain& chain, const FramePlan& plan);
+
+template <class Executor>
+void upload_textures(Executor& executor, const TextureSlots& slots, const SceneArrays& scene) {
+  const TextureArrays& textures = scene.textures;
+  executor.upload(slots.materials, std::span<const TexturedMaterial>(scene.textured_materials));
+  executor.upload(slots.maps, std::span<const MaterialTextures>(textures.materials));
+  executor.upload(slots.headers, std::span<const TextureHeader>(textures.headers));
+  executor.upload(slots.texels, std::span<const uint>(textures.texels));
+  executor.upload(slots.srgb_to_linear, std::span<const float>(textures.srgb_to_linear));
+  executor.upload(slots.corners, std::span<const CornerAttributes>(scene.corners));
+}
 
 // Uploads all that a build and a trace read, through any executor.
 template <class Executor>
@@ -59,6 +70,7 @@ void upload_frame(Executor& executor, const TreeSlots& tree, const TracePlan& tr
   executor.upload(trace.srgb_thresholds, std::span<const uint>(thresholds));
   if (trace.lights.sources.count > 0)
     executor.upload(trace.lights.sources, std::span<const LightSource>(scene.lights));
+  if (trace.textures.headers.count > 0) upload_textures(executor, trace.textures, scene);
 }
 
 // The same of a frame with or without instances.

@@ -43,9 +43,23 @@ void add_lights(SceneArrays& arrays, const Scene& scene, const EffectSet& effect
   arrays.lighting = {direction, 0, vec3(0.80f, 0.87f, 0.94f), 0, vec3(0.24f, 0.45f, 0.78f), 0};
 }
 
+// `arrays` has the materials.
+void add_textures(SceneArrays& arrays, const Scene& scene) {
+  arrays.textures = texture_arrays(scene);
+  if (arrays.textures.empty()) return;
+  arrays.corners = corner_attributes(scene);
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    const Material& material = scene.materials[i];
+    arrays.textured_materials.push_back(
+        {material.emission, material.diffuse * scene.ambient_light, arrays.materials[i].diffuse});
+  }
+}
+
 }  // namespace
 
-SceneArrays scene_arrays(const Scene& scene) { return scene_arrays(scene, effects_of(scene)); }
+SceneArrays scene_arrays(const Scene& scene) {
+  return scene_arrays(scene, effects_of(scene, EffectChanges("-textures")));
+}
 
 SceneArrays scene_arrays(const Scene& scene, const EffectSet& effects) {
   SceneArrays arrays;
@@ -58,6 +72,7 @@ SceneArrays scene_arrays(const Scene& scene, const EffectSet& effects) {
   }
   arrays.material_index = scene.material_index;
   add_lights(arrays, scene, effects);
+  if (effects.has(Effect::textures)) add_textures(arrays, scene);
   arrays.meshes = scene.meshes;
   for (const Instance& instance : scene.instances) {
     arrays.mesh_index.push_back(instance.mesh);

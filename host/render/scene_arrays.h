@@ -5,6 +5,8 @@
 
 #include "interface/instances.h"
 #include "pipeline/lights.h"
+#include "pipeline/textures.h"
+#include "render/texture_arrays.h"
 #include "scene/effect_set.h"
 
 namespace coppice {
@@ -17,19 +19,26 @@ struct SceneArrays {
   Lighting lighting = {};
   std::vector<LightSource> lights;  // that shading goes over, see LightCounts; none: the one of `lighting`
   LightCounts light_counts;
+  // Where textures are asked for, and there are some:
+  TextureArrays textures;
+  std::vector<TexturedMaterial> textured_materials;
+  std::vector<CornerAttributes> corners;
   // Of a scene with instances: its meshes, and of each instance the mesh and the transform.
   std::vector<InstancedMesh> meshes;
   std::vector<uint> mesh_index;
   std::vector<InstanceTransform> transforms;
 
   std::uint32_t triangle_count() const { return static_cast<std::uint32_t>(triangles.size()); }
+  TextureCounts texture_counts() const {
+    return {static_cast<std::uint32_t>(textures.headers.size()), textures.texels.size()};
+  }
   // Of the tree over the scene: instances, where there are two levels.
   std::uint32_t primitive_count() const {
     return mesh_index.empty() ? triangle_count() : static_cast<std::uint32_t>(mesh_index.size());
   }
 };
 
-// With the effects that it calls for, or with these.
+// With the effects that it calls for, but for textures, whose images are then not opened; or with these.
 SceneArrays scene_arrays(const Scene& scene);
 SceneArrays scene_arrays(const Scene& scene, const EffectSet& effects);
 

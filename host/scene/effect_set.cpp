@@ -31,6 +31,22 @@ std::string known_effects() {
   return names;
 }
 
+// By the first triangle whose material has a map of colours.
+void call_for_textures(const Scene& scene, EffectSet& effects) {
+  const auto map_of = [&](std::uint32_t index) -> const TextureMap* {
+    const Material& material = scene.materials[index];
+    if (material.diffuse_map) return &material.diffuse_map;
+    return material.emission_map ? &material.emission_map : nullptr;
+  };
+  std::vector<bool> has_map;
+  for (std::uint32_t i = 0; i < scene.materials.size(); ++i) has_map.push_back(map_of(i) != nullptr);
+  const auto mapped =
+      std::ranges::find_if(scene.material_index, [&](std::uint32_t index) { return has_map[index]; });
+  if (mapped == scene.material_index.end()) return;
+  effects.call(Effect::textures, "material '" + printable(std::string_view(scene.materials[*mapped].name)) +
+                                     "', which has " + printable(std::string_view(map_of(*mapped)->name)));
+}
+
 }  // namespace
 
 void EffectSet::call(Effect effect, const std::string& by) {
@@ -56,6 +72,7 @@ EffectSet effects_of(const Scene& scene, const EffectChanges& changes) {
     if (count > 1) effects.call(Effect::lights, light.origin + ", light number " + std::to_string(count));
     if (light.shadows) effects.call(Effect::shadows, light.origin + ", which casts shadows");
   }
+  call_for_textures(scene, effects);
   return changes.applied_to(effects);
 }
 

@@ -13,9 +13,9 @@ namespace coppice {
 
 // What is simulated only where a scene calls for it. The table in docs/effects.md says what calls for which,
 // and what each adds.
-enum class Effect : std::uint32_t { lights, shadows };
+enum class Effect : std::uint32_t { lights, shadows, textures };
 
-inline constexpr std::string_view EFFECT_NAMES[] = {"lights", "shadows"};
+inline constexpr std::string_view EFFECT_NAMES[] = {"lights", "shadows", "textures"};
 inline constexpr std::size_t effect_count = std::size(EFFECT_NAMES);
 
 constexpr std::string_view name_of(Effect effect) { return EFFECT_NAMES[static_cast<std::size_t>(effect)]; }
@@ -31,6 +31,9 @@ class EffectSet {
 
   bool has(Effect effect) const { return of(effect).on; }
   const State& of(Effect effect) const { return states_[static_cast<std::size_t>(effect)]; }
+
+  // Whether some effect takes triangles of one level: instances are then flattened.
+  bool needs_one_level() const { return has(Effect::shadows) || has(Effect::textures); }
 
   // The first thing that calls for an effect is the one that is named.
   void call(Effect effect, const std::string& by);

@@ -14,6 +14,7 @@
 #include "interface/scan.h"
 #include "interface/show.h"
 #include "interface/sort.h"
+#include "interface/texture_hits.h"
 #include "interface/trace.h"
 #include "interface/vertex.h"
 #include "interface/wide.h"
@@ -74,6 +75,7 @@
   STAGE(trace_instances, TraceInstancesArgs, TraceInstancesConstants, nearly_levels)   \
   STAGE(place_hits, PlaceHitsArgs, NoConstants, exactly)                               \
   STAGE(bounce_rays, BounceRaysArgs, NoConstants, nearly_bounced)                      \
+  STAGE(texture_hits, TextureHitsArgs, NoConstants, nearly_materials)                  \
   STAGE(shade, ShadeArgs, ShadeConstants, nearly_radiance)                             \
   STAGE(shadow_marks, ShadowMarksArgs, NoConstants, exactly)                           \
   STAGE(shadow_rays, ShadowRaysArgs, NoConstants, nearly_shadow_rays)                  \
@@ -111,6 +113,7 @@ inline constexpr NearlySlot nearly_levels[] = {
     {"hits", Nearly::hits}, {"hit_instances", Nearly::hit_instances}, {"counters", Nearly::counters}};
 inline constexpr NearlySlot nearly_bounced[] = {{"bounced_rays", Nearly::rays}};
 inline constexpr NearlySlot nearly_shadow_rays[] = {{"shadow_rays", Nearly::rays}};
+inline constexpr NearlySlot nearly_materials[] = {{"hit_materials", Nearly::radiance}};
 inline constexpr NearlySlot nearly_radiance[] = {{"radiance", Nearly::radiance}};
 inline constexpr NearlySlot nearly_noise[] = {{"noise_sums", Nearly::noise}};
 inline constexpr NearlySlot nearly_marks[] = {{"noise_marks", Nearly::any_hits}};

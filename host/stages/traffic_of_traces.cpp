@@ -124,6 +124,15 @@ Bytes shade(const ShadeArgs& a, const RunCounts& counts) {
          share(counts.hits, a.ray_count, counts) * (4 + sizeof(SurfaceMaterial) + sizeof(Triangle));
 }
 
+// Of each ray its triangle, of a hit what it is textured by: one map, of two levels with four texels each,
+// and its material.
+Bytes texture_hits(const TextureHitsArgs& a, const RunCounts& counts) {
+  return Bytes{a.ray_count} * 4 +
+         share(counts.hits, a.ray_count, counts) *
+             (sizeof(Hit) - 4 + sizeof(vec3) + sizeof(Triangle) + 4 + sizeof(TexturedMaterial) + 8 +
+              sizeof(TextureHeader) + 8 * 4 + sizeof(CornerAttributes) + sizeof(SurfaceMaterial));
+}
+
 // Of each ray its hit and its mark, of a hit its direction and its surface.
 Bytes shadow_marks(const ShadowMarksArgs& a, const RunCounts& counts) {
   return Bytes{a.ray_count} * (sizeof(Hit) + 4) +

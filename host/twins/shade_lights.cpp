@@ -2,6 +2,7 @@
 
 #include "twins/leave_surface.h"
 #include "twins/light_source.h"
+#include "twins/material_of.h"
 #include "twins/vectors.h"
 
 namespace coppice::twins {
@@ -36,7 +37,7 @@ void shade_lights(const ShadeLightsArgs& args) {
     const Triangle& triangle = args.triangles[hit.triangle];
     vec3 normal = unit_normal(triangle);
     if (dot_product(normal, args.rays[i].direction) > 0) normal = -normal;
-    const vec3& diffuse = args.materials[args.material_index[hit.triangle]].diffuse;
+    const vec3& diffuse = material_of(args, i, hit.triangle).diffuse;
     for (uint light = args.first_light; light < args.first_light + args.light_count; ++light)
       args.radiance[i] += reflected_light(diffuse, args.lights[light], hit_point(triangle, hit), normal);
   }

@@ -1,5 +1,6 @@
 #include "twins/leave_surface.h"
 #include "twins/light_source.h"
+#include "twins/material_of.h"
 
 namespace coppice::twins {
 
@@ -9,7 +10,7 @@ void shadow_marks(const ShadowMarksArgs& args) {
     args.marks[i] = 0;
     const Hit hit = args.hits[i];
     if (hit.triangle == NO_TRIANGLE) continue;
-    const vec3& diffuse = args.materials[args.material_index[hit.triangle]].diffuse;
+    const vec3& diffuse = material_of(args, i, hit.triangle).diffuse;
     bool reflects = false;
     for (int channel = 0; channel < 3; ++channel)
       reflects |= diffuse[channel] > 0 && light.radiance[channel] > 0;

@@ -22,7 +22,8 @@ std::string group_of(std::string_view stage) {
       {"ploc_", "PLOC"},          {"hploc_", "H-PLOC"},   {"wide_", "wide"},         {"trace_", "trace"},
       {"morton_", "Morton"},      {"refit_", "refit"},    {"camera_", "camera"},     {"move_", "instances"},
       {"instance_", "instances"}, {"copy_", "instances"}, {"place_", "instances"},   {"shadow_", "shadows"},
-      {"scan_", "shadows"},       {"prefix_", "shadows"}, {"shade_lights", "lights"}};
+      {"scan_", "shadows"},       {"prefix_", "shadows"}, {"shade_lights", "lights"},
+      {"texture_", "textures"}};
   for (const auto& [prefix, name] : prefixes) {
     if (stage.starts_with(prefix)) return name;
   }
@@ -77,12 +78,12 @@ OpenedScene open_for_view(const SceneOptions& options, const BuilderChoice& buil
   const auto silently = [](const std::string&) {};
   opened.scene = open_scene_with_room(kept, nullptr, {}, silently);
   opened.has_instances = !opened.scene.instances.empty();
-  // Shadow rays are traced through trees of one level.
   kept.keep_instances =
-      options.keep_instances && !effects_of(opened.scene, options.effects).has(Effect::shadows);
+      options.keep_instances && !effects_of(opened.scene, options.effects).needs_one_level();
   if (opened.has_instances && !kept.keep_instances)
     opened.scene = open_scene_with_room(kept, nullptr, {}, silently);
   opened.arrays = scene_arrays(opened.scene, effects_for_view(options, builder, opened.scene));
+  for (const std::string& warning : opened.arrays.textures.warnings) opened.scene.warnings.push_back(warning);
   opened.box = box_of_scene(opened.scene, opened.arrays);
   if (builder.on_device()) return opened;
   const auto start = std::chrono::steady_clock::now();

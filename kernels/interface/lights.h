@@ -27,7 +27,7 @@ INTERFACE_BUFFER(LightSourceBuffer, LightSource, 16)
 // that the light is on, and reflects some of the light.
 struct ShadowMarksArgs {
   READS(TriangleBuffer) triangles;
-  READS(UintBuffer) material_index;  // one a triangle
+  READS(UintBuffer) material_index;  // as in ShadeArgs
   READS(SurfaceMaterialBuffer) materials;
   READS(LightSourceBuffer) lights;
   READS(RayBuffer) rays;  // ray_count
@@ -55,7 +55,7 @@ struct ShadowRaysArgs {
 // one light that casts shadows: it lights marked hits whose shadow ray has hit nothing.
 struct ShadeLightsArgs {
   READS(TriangleBuffer) triangles;
-  READS(UintBuffer) material_index;
+  READS(UintBuffer) material_index;        // as in ShadeArgs
   READS(SurfaceMaterialBuffer) materials;  // diffuse: the colour alone
   READS(LightSourceBuffer) lights;
   READS(RayBuffer) rays;

@@ -250,7 +250,7 @@ struct BounceRaysArgs {
 
 struct ShadeArgs {
   READS(TriangleBuffer) triangles;
-  READS(UintBuffer) material_index;  // one a triangle
+  READS(UintBuffer) material_index;  // one a triangle; null: `materials` are one a ray
   READS(SurfaceMaterialBuffer) materials;
   READS(LightingBuffer) lighting;
   READS(RayBuffer) rays;

@@ -16,8 +16,8 @@
 #include "scene/hard_cases.h"
 #include "stages/stages.h"
 #include "support/instances.h"
-#include "support/lit_scene.h"
 #include "support/moving_scenes.h"
+#include "support/textured_scene.h"
 
 namespace coppice {
 namespace {
@@ -33,6 +33,7 @@ struct Frame {
   bool keep_hits = true;
   bool lights = false;   // two, which cast shadows
   bool refines = false;  // as a picture whose error is estimated
+  bool textures = false;
 };
 constexpr Frame frames[] = {
     {1000, DeviceBuilder::ploc, true, Walk::binary},
@@ -44,18 +45,20 @@ constexpr Frame frames[] = {
     {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_DEPTH},
     {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 1, true, true},
     {300, DeviceBuilder::ploc, true, Walk::wide_single, SHOW_COLOR, 1, true, true},
-    {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 2, true, false, true}};
+    {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 2, true, false, true},
+    {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 1, true, false, false, true}};
 constexpr std::size_t scan_and_copy = std::size(frames), inputs = scan_and_copy + 1, vertices = inputs + 1,
                       refits = vertices + 1, instances = refits + 1, chain_count = instances + 1;
 
 Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
-  Scene scene = frame.lights ? triangles_over_plane(frame.triangles)
-                             : find_hard_case("nested")->make(frame.triangles, 1);
+  Scene scene = frame.lights     ? triangles_over_plane(frame.triangles)
+                : frame.textures ? textured_scene(frame.triangles)
+                                 : find_hard_case("nested")->make(frame.triangles, 1);
   if (frame.lights) {
     scene.light.shadows = true;
     scene.more_lights.push_back({.is_point = true, .place = {1, 3, 2}, .shadows = true, .origin = ""});
   }
-  SceneArrays arrays = scene_arrays(scene);
+  SceneArrays arrays = scene_arrays(scene, effects_of(scene));
   arrays.lighting = {};  // padding and all
   if (!frame.lights) arrays.lighting.light_direction = {0.6f, 0.8f, 0};
   arrays.lighting.sky_horizon = {0.8f, 0.9f, 1};
@@ -71,6 +74,7 @@ Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
   trace_options.keep_hits = frame.keep_hits;
   trace_options.keep_noise = trace_options.adaptive = frame.refines;
   trace_options.lights = arrays.light_counts;
+  trace_options.textures = arrays.texture_counts();
   std::optional<WidePlan> wide;
   if (is_wide(frame.walk)) wide = plan_wide(layout, build, &build);
   const TracePlan trace =
