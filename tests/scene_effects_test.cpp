@@ -64,6 +64,7 @@ TEST(Effects, LightsCallForThemByTheirPlaceInTheFile) {
 TEST(Effects, AMapOfColoursThatATriangleHasCallsForTextures) {
   Scene scene = with_light();
   scene.materials = {Material{}, Material{}, Material{}};
+  std::ranges::fill(scene.material_index, 0u);
   scene.materials[1].name = "wall";
   scene.materials[1].emission_map.name = "glow.png";
   scene.materials[2].diffuse_map.name = "unused.png";
@@ -72,6 +73,8 @@ TEST(Effects, AMapOfColoursThatATriangleHasCallsForTextures) {
   scene.material_index.back() = 1;
   EXPECT_EQ(caller(scene, Effect::textures), "material 'wall', which has glow.png");
   EXPECT_TRUE(effects_of(scene).needs_one_level());
+  EXPECT_FALSE(effects_of(scene, EffectChanges("-textures")).needs_one_level());
+  EXPECT_FALSE(effects_of(with_light(), EffectChanges("+textures")).needs_one_level());
 }
 
 TEST(Effects, WhatIsShadedHasThoseThatCastShadowsLast) {

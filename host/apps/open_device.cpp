@@ -57,10 +57,10 @@ Scene open_for_effects(const SceneOptions& options, const BuilderChoice& builder
     SceneOptions one_level = options;
     one_level.keep_instances = false;
     scene = open(one_level);
-    if (moves && !scene.motion && !may_stand_still)
+    if (effects.has(Effect::shadows) && moves && !scene.motion && !may_stand_still)
       throw InputError("scene '" + scene.name +
-                       "' has instances that move, which take neither shadows nor textures "
-                       "(--effects=-shadows,-textures goes without)");
+                       "' has instances that move, through which no shadow rays are traced "
+                       "(--effects=-shadows goes without)");
   }
   print_warnings(scene);
   return scene;

@@ -32,8 +32,11 @@ class EffectSet {
   bool has(Effect effect) const { return of(effect).on; }
   const State& of(Effect effect) const { return states_[static_cast<std::size_t>(effect)]; }
 
-  // Whether some effect takes triangles of one level: instances are then flattened.
-  bool needs_one_level() const { return has(Effect::shadows) || has(Effect::textures); }
+  // Whether some effect takes triangles of one level: instances are then flattened. Textures that are turned
+  // on and that nothing has take nothing.
+  bool needs_one_level() const {
+    return has(Effect::shadows) || (has(Effect::textures) && !of(Effect::textures).called_by.empty());
+  }
 
   // The first thing that calls for an effect is the one that is named.
   void call(Effect effect, const std::string& by);
