@@ -18,12 +18,13 @@ namespace {
 // Kernels that a reader takes for one; else a kernel is a group of its own.
 std::string group_of(std::string_view stage) {
   constexpr std::pair<std::string_view, const char*> prefixes[] = {
-      {"vertex_", "vertices"},    {"gather_", "bounds"},  {"primitive_", "bounds"},  {"sort_", "sort"},
-      {"ploc_", "PLOC"},          {"hploc_", "H-PLOC"},   {"wide_", "wide"},         {"trace_", "trace"},
-      {"morton_", "Morton"},      {"refit_", "refit"},    {"camera_", "camera"},     {"move_", "instances"},
-      {"instance_", "instances"}, {"copy_", "instances"}, {"place_", "instances"},   {"shadow_", "shadows"},
-      {"scan_", "shadows"},       {"prefix_", "shadows"}, {"shade_lights", "lights"},
-      {"texture_", "textures"}};
+      {"vertex_", "vertices"},    {"gather_", "bounds"},   {"primitive_", "bounds"},
+      {"sort_", "sort"},          {"ploc_", "PLOC"},       {"hploc_", "H-PLOC"},
+      {"wide_", "wide"},          {"trace_", "trace"},     {"morton_", "Morton"},
+      {"refit_", "refit"},        {"camera_", "camera"},   {"move_", "instances"},
+      {"instance_", "instances"}, {"copy_", "instances"},  {"place_", "instances"},
+      {"shadow_", "shadows"},     {"scan_", "shadows"},    {"prefix_", "shadows"},
+      {"shade_lights", "lights"}, {"texture_", "textures"}};
   for (const auto& [prefix, name] : prefixes) {
     if (stage.starts_with(prefix)) return name;
   }
