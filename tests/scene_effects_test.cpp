@@ -161,7 +161,7 @@ bool has_slot(const RecordedPicture& picture, const std::string& name) {
 TEST(Effects, ThePlainSceneRecordsAsIfThereWereNone) {
   const Scene rich = with_lights({shadowed(sun), lamp});
   for (const RecordedPicture& picture :
-       {recorded(with_light()), recorded(with_lights({sun})), recorded(rich, "-lights,-shadows")}) {
+       {recorded(with_light()), recorded(with_lights({sun})), recorded(rich, no_effects().c_str())}) {
     EXPECT_EQ(kernels_of(picture), "camera_rays*1 trace_closest*1 shade_pixels*1");
     for (const std::uint32_t steps : picture.effect_steps) EXPECT_EQ(steps, 0u);
     for (const char* slot : {"lights", "shadow_marks", "shadow_places", "shadow_scan_status", "shadow_rays",

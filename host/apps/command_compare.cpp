@@ -107,7 +107,7 @@ class CompareCommand : public Command {
   std::vector<std::string> arguments(const std::string& scene, const std::string& builder) const {
     std::vector<std::string> words = {"render", scene, "--builder", builder,
                                       "--json", "-",   "-o",        "/dev/null"};
-    words.push_back("--effects=-lights,-shadows");  // builders are compared by the camera's rays
+    words.push_back("--effects=" + no_effects());  // builders are compared by the camera's rays
     const auto add = [&](const char* flag, const std::string& value) {
       words.insert(words.end(), {flag, value});
     };

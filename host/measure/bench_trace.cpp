@@ -62,7 +62,7 @@ void add_frame(CheckedDevice& device, const BenchOptions& options, const Scene& 
                                            .trace = trace_options(device, options, walk),
                                            .camera = options.camera,
                                            .runs = options.runs,
-                                           .effects = EffectChanges("-lights,-shadows")});
+                                           .effects = EffectChanges(no_effects())});
   if (frame.rays != row.size) throw DeviceError("the picture has other rays than the measurement");
   const double mrays_per_s = static_cast<double>(frame.rays) / frame.trace_ms / 1000;
   row.figures = {{"frame_ms", frame.trace_ms}, {"frame_millions_per_s", mrays_per_s}};

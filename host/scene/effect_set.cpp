@@ -62,6 +62,12 @@ void EffectSet::override(Effect effect, bool on) {
   state.overridden = true;
 }
 
+std::string no_effects() {
+  std::string text;
+  for (const std::string_view name : EFFECT_NAMES) text.append(text.empty() ? "-" : ",-").append(name);
+  return text;
+}
+
 // THE TABLE of docs/effects.md, line by line.
 EffectSet effects_of(const Scene& scene, const EffectChanges& changes) {
   EffectSet effects;

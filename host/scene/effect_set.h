@@ -68,6 +68,9 @@ class EffectChanges {
   std::string text_;
 };
 
+// Changes that turn all effects off.
+std::string no_effects();
+
 // What a scene calls for, changed or not.
 EffectSet effects_of(const Scene& scene, const EffectChanges& changes = {});
 
