@@ -86,10 +86,11 @@ Desktop::Desktop() {
     if (!is_installed(program)) missing_ = std::string(program) + " is not installed";
   }
   if (!missing_.empty()) return;
-  // It takes a display that is free and says which.
-  server_.emplace(
-      std::vector<std::string>{"Xvfb", "-displayfd", "1", "-screen", "0", "1280x1024x24", "-nolisten", "tcp"},
-      "desktop", std::vector<std::string>{});
+  // It takes a display that is free and says which. Whenever its last client leaves it would start anew, and
+  // the window that connects meanwhile would find none: xdotool comes and goes before there is a window.
+  server_.emplace(std::vector<std::string>{"Xvfb", "-noreset", "-displayfd", "1", "-screen", "0",
+                                           "1280x1024x24", "-nolisten", "tcp"},
+                  "desktop", std::vector<std::string>{});
   wait_until([&] { return server_->out().ends_with('\n') || server_->has_ended(); });
   const std::string number = server_->out();
   if (number.ends_with('\n')) {
