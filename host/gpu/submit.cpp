@@ -16,7 +16,12 @@ std::uint64_t submit_commands(VulkanContext& context, vk::CommandBuffer commands
 void wait_for(VulkanContext& context, std::uint64_t value, double limit_seconds) {
   const auto limit_ns = static_cast<std::uint64_t>(limit_seconds * 1e9);
   const vk::SemaphoreWaitInfo wait({}, *context.timeline, value);
-  if (context.device.waitSemaphores(wait, limit_ns) != vk::Result::eTimeout) return;
+  if (context.device.waitSemaphores(wait, limit_ns) != vk::Result::eTimeout) {
+    // The validation layer notes the end of submits in a thread of its own, with a lock that a process which
+    // is forked meanwhile would find taken for ever. This waits for that thread.
+    if (*context.messenger && !context.adopted) context.queue.waitIdle();
+    return;
+  }
   context.hung = true;
   char seconds[32];
   std::snprintf(seconds, sizeof seconds, "%g", limit_seconds);
