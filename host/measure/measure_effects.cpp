@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <initializer_list>
 #include <numeric>
 
 #include "measure/effects_report.h"
@@ -14,15 +15,21 @@ using Kernel = RecordedPicture::Kernel;
 
 // Whether a step is there for this effect alone.
 bool belongs_to(const Step& step, Effect effect) {
-  if (effect == Effect::textures) return stage_of(step) == &stages::texture_hits;
+  const StageDeclaration* const stage = stage_of(step);
+  const auto is_one_of = [&](std::initializer_list<const StageDeclaration*> own) {
+    return std::ranges::find(own, stage) != own.end();
+  };
+  if (effect == Effect::textures) return stage == &stages::texture_hits;
+  if (effect == Effect::alpha)
+    return is_one_of({&stages::trace_closest_alpha, &stages::trace_wide_alpha,
+                      &stages::trace_wide_single_alpha, &stages::trace_any_alpha,
+                      &stages::trace_wide_any_alpha});
   const ShadeLightsArgs* const shading = args_of(step, stages::shade_lights);
   if (shading) return (shading->marks.value != 0) == (effect == Effect::shadows);
   if (effect != Effect::shadows) return false;
-  const StageDeclaration* const stage = stage_of(step);
-  const StageDeclaration* const own[] = {&stages::shadow_marks,   &stages::shadow_rays,
-                                         &stages::scan_tile_sums, &stages::prefix_scan,
-                                         &stages::trace_any,      &stages::trace_wide_any};
-  return std::ranges::find(own, stage) != std::end(own);
+  return is_one_of({&stages::shadow_marks, &stages::shadow_rays, &stages::scan_tile_sums,
+                    &stages::prefix_scan, &stages::trace_any, &stages::trace_wide_any,
+                    &stages::trace_any_alpha, &stages::trace_wide_any_alpha});
 }
 
 void count_kernel(std::vector<Kernel>& kernels, const char* name) {

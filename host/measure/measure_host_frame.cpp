@@ -15,6 +15,7 @@
 #include "render/frame.h"
 #include "stages/cpu_executor.h"
 #include "stages/stages.h"
+#include "twins/alpha.h"
 
 namespace coppice {
 
@@ -25,21 +26,33 @@ std::uint64_t count_hits(std::span<const Hit> hits) {
       std::ranges::count_if(hits, [](const Hit& hit) { return hit.triangle != NO_TRIANGLE; }));
 }
 
-void trace_closest_on_host(const TraceClosestArgs& args, const Bvh& bvh, std::span<const Triangle> triangles,
+// What rays pass, by the arguments of a stage with alpha; nothing by those of others.
+template <class Args>
+PassedHits passed_hits(const Args& args) {
+  if constexpr (requires { args.alpha_maps; })
+    return [&args](std::size_t ray, const Hit& hit) {
+      return twins::Alpha(args, args.rays[ray]).lets_through(hit);
+    };
+  return {};
+}
+
+template <class Args>
+void trace_closest_on_host(const Args& args, const Bvh& bvh, std::span<const Triangle> triangles,
                            FrameReport& report) {
   const std::span<const Ray> rays(&args.rays[0], args.ray_count);
   const std::span<Hit> hits(&args.hits[0], args.ray_count);
-  trace_all(bvh.nodes, triangles, rays, hits);
+  trace_all(bvh.nodes, triangles, rays, hits, passed_hits(args));
   report.rays += rays.size();
   report.hits += count_hits(hits);
 }
 
 // Of shadow rays: whether there is a closest hit.
-void trace_any_on_host(const TraceAnyArgs& args, const Bvh& bvh, std::span<const Triangle> triangles,
+template <class Args>
+void trace_any_on_host(const Args& args, const Bvh& bvh, std::span<const Triangle> triangles,
                        FrameReport& report) {
   const std::span<const Ray> rays(&args.rays[0], args.count_at[0]);
   std::vector<Hit> hits(rays.size());
-  trace_all(bvh.nodes, triangles, rays, hits);
+  trace_all(bvh.nodes, triangles, rays, hits, passed_hits(args));
   for (std::size_t i = 0; i < hits.size(); ++i) args.any_hits[i] = hits[i].triangle != NO_TRIANGLE;
   report.shadow.rays += rays.size();
   report.shadow.hits += count_hits(hits);
@@ -56,10 +69,14 @@ struct HostTrace {
 
   void run(const Chain& chain) {
     for (const Step& step : chain.steps()) {
-      if (const TraceClosestArgs* const closest = args_of(step, stages::trace_closest))
+      if (const auto* const closest = args_of(step, stages::trace_closest))
         trace_closest_on_host(*closest, bvh, triangles, report);
-      else if (const TraceAnyArgs* const any = args_of(step, stages::trace_any))
+      else if (const auto* const past_holes = args_of(step, stages::trace_closest_alpha))
+        trace_closest_on_host(*past_holes, bvh, triangles, report);
+      else if (const auto* const any = args_of(step, stages::trace_any))
         trace_any_on_host(*any, bvh, triangles, report);
+      else if (const auto* const any_past_holes = args_of(step, stages::trace_any_alpha))
+        trace_any_on_host(*any_past_holes, bvh, triangles, report);
       else
         executor.run(step);
     }
@@ -142,7 +159,7 @@ FrameReport measure_host_frame(CheckedDevice* device, const Scene& scene, const 
                                const Note& note) {
   const SceneArrays arrays = scene_arrays(scene, effects_of(scene, frame.effects));
   FrameReport report;
-  for (const std::string& warning : arrays.textures.warnings) note(warning);
+  for (const std::string& warning : arrays.image_warnings()) note(warning);
   report.trace_device = "host CPU";
   report.build = report_for(frame.builder, scene, arrays.triangles, note);
   Bvh bvh;

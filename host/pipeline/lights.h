@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "interface/lights.h"
+#include "pipeline/alpha.h"
 #include "pipeline/build_plan.h"
 
 namespace coppice {
@@ -44,6 +45,7 @@ struct LitRays {
   HitBuffer hits;
   Vec3Buffer radiance;
   std::uint32_t count;
+  AlphaSlots alpha{};  // of the triangles that may be in the way
 };
 
 // Adds to the radiance what the surfaces reflect of all lights: those without shadows in one step; for each

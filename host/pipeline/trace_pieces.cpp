@@ -146,7 +146,7 @@ void TracePieces::append_all_lights(Chain& chain, Vec3Buffer radiance) const {
   const auto [triangles, material_index, materials] = textured_surfaces(chain);
   append_lights(chain, tree_, plan_.lights,
                 {triangles, material_index, materials, chain.at(plan_.rays, range_.first),
-                 chain.at(plan_.hits, range_.first), radiance, range_.count},
+                 chain.at(plan_.hits, range_.first), radiance, range_.count, plan_.filter.alpha},
                 plan_.options);
 }
 

@@ -39,6 +39,7 @@ struct TraceOptions {
   bool directional_light = true;    // what the scene calls for
   LightCounts lights{};             // of colours
   TextureCounts textures{};         // of colours
+  AlphaCounts alpha{};              // of colours; not by brute force
   std::uint32_t show = SHOW_COLOR;  // SHOW_; brute force has no steps
   bool keep_hits = false;           // the rays of the last sample and their hits are asked for
   ToneMapping tone{};               // of colours

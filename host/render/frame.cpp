@@ -15,6 +15,7 @@ FramePlan plan_instanced_frame(Layout& layout, const SceneArrays& scene, const F
     throw std::invalid_argument("shadows are traced through trees of one level");
   if (options.trace.textures.textures > 0)
     throw std::invalid_argument("textures lie on triangles of one level");
+  if (options.trace.alpha.maps > 0) throw std::invalid_argument("triangles of one level let rays through");
   if (!options.build || options.trace.walk != Walk::binary)
     throw std::invalid_argument("instances are built on the device and walked through binary trees");
   std::vector<std::uint32_t> counts;
@@ -44,8 +45,11 @@ FramePlan plan_frame(Layout& layout, const SceneArrays& scene, const FrameOption
   const bool colours = options.trace.show == SHOW_COLOR;
   options.trace.lights = colours ? scene.light_counts : LightCounts{};
   options.trace.textures = colours ? scene.texture_counts() : TextureCounts{};
+  options.trace.alpha = colours ? scene.alpha_counts() : AlphaCounts{};
   if (options.trace.lights.shadows > 0 && options.trace.walk == Walk::brute_force)
     throw std::invalid_argument("shadows are traced through a tree");
+  if (options.trace.alpha.maps > 0 && options.trace.walk == Walk::brute_force)
+    throw std::invalid_argument("alpha is looked at by what walks through a tree");
   if (!scene.mesh_index.empty()) return plan_instanced_frame(layout, scene, options);
   FramePlan plan;
   if (options.build) plan.build = plan_build(layout, scene.triangle_count(), *options.build);

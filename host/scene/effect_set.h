@@ -13,9 +13,9 @@ namespace coppice {
 
 // What is simulated only where a scene calls for it. The table in docs/effects.md says what calls for which,
 // and what each adds.
-enum class Effect : std::uint32_t { lights, shadows, textures };
+enum class Effect : std::uint32_t { lights, shadows, textures, alpha };
 
-inline constexpr std::string_view EFFECT_NAMES[] = {"lights", "shadows", "textures"};
+inline constexpr std::string_view EFFECT_NAMES[] = {"lights", "shadows", "textures", "alpha"};
 inline constexpr std::size_t effect_count = std::size(EFFECT_NAMES);
 
 constexpr std::string_view name_of(Effect effect) { return EFFECT_NAMES[static_cast<std::size_t>(effect)]; }
@@ -32,10 +32,10 @@ class EffectSet {
   bool has(Effect effect) const { return of(effect).on; }
   const State& of(Effect effect) const { return states_[static_cast<std::size_t>(effect)]; }
 
-  // Whether some effect takes triangles of one level: instances are then flattened. Textures that are turned
-  // on and that nothing has take nothing.
+  // Whether some effect takes triangles of one level: instances are then flattened. Textures and alpha that
+  // are turned on and that nothing has take nothing.
   bool needs_one_level() const {
-    return has(Effect::shadows) || (has(Effect::textures) && !of(Effect::textures).called_by.empty());
+    return has(Effect::shadows) || is_called(Effect::textures) || is_called(Effect::alpha);
   }
 
   // The first thing that calls for an effect is the one that is named.
@@ -43,6 +43,8 @@ class EffectSet {
   void override(Effect effect, bool on);
 
  private:
+  bool is_called(Effect effect) const { return has(effect) && !of(effect).called_by.empty(); }
+
   std::array<State, effect_count> states_;
 };
 

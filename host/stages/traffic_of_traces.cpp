@@ -47,6 +47,21 @@ Bytes shadow_walk_bytes(Bytes rays, Bytes step, const RunCounts& counts) {
          shadow_share(counts.shadow.steps * step + counts.shadow.hits * sizeof(Triangle), rays, counts);
 }
 
+// Of each hit, beside what the trace without alpha moves, the word of its triangle. How many others were
+// looked at, and let rays through, nobody counts.
+Bytes alpha_bytes(Bytes hits, Bytes rays, const RunCounts& counts) {
+  return share(hits * sizeof(uint), rays, counts);
+}
+
+template <class Args>
+Bytes any_alpha_bytes(const Args& a, Bytes step, const RunCounts& counts) {
+  if (counts.shadow.could_be)
+    return shadow_walk_bytes(a.ray_count, step, counts) +
+           shadow_share(counts.shadow.hits * sizeof(uint), a.ray_count, counts);
+  return walk_bytes(a, ray_and_word, counts.steps * step + triangles_of(counts), counts) +
+         alpha_bytes(counts.hits, a.ray_count, counts);
+}
+
 }  // namespace
 
 Bytes camera_rays(const CameraRaysArgs& a, const RunCounts&) {
@@ -78,6 +93,30 @@ Bytes trace_any(const TraceAnyArgs& a, const RunCounts& counts) {
 Bytes trace_wide_any(const TraceWideAnyArgs& a, const RunCounts& counts) {
   if (counts.shadow.could_be) return shadow_walk_bytes(a.ray_count, sizeof(WideNode), counts);
   return walk_bytes(a, ray_and_word, wide_nodes_of(counts) + triangles_of(counts), counts);
+}
+
+Bytes trace_closest_alpha(const TraceClosestAlphaArgs& a, const RunCounts& counts) {
+  return walk_bytes(a, ray_and_hit + kept_steps(a), pairs_of(counts) + triangles_of(counts), counts) +
+         alpha_bytes(counts.hits, a.ray_count, counts);
+}
+
+Bytes trace_wide_alpha(const TraceWideAlphaArgs& a, const RunCounts& counts) {
+  return walk_bytes(a, ray_and_hit + kept_steps(a),
+                    counts.steps / TRACE_PACKET * sizeof(WideNode) + triangles_of(counts), counts) +
+         alpha_bytes(counts.hits, a.ray_count, counts);
+}
+
+Bytes trace_wide_single_alpha(const TraceWideAlphaArgs& a, const RunCounts& counts) {
+  return walk_bytes(a, ray_and_hit + kept_steps(a), wide_nodes_of(counts) + triangles_of(counts), counts) +
+         alpha_bytes(counts.hits, a.ray_count, counts);
+}
+
+Bytes trace_any_alpha(const TraceAnyAlphaArgs& a, const RunCounts& counts) {
+  return any_alpha_bytes(a, 2 * sizeof(Node), counts);
+}
+
+Bytes trace_wide_any_alpha(const TraceWideAnyAlphaArgs& a, const RunCounts& counts) {
+  return any_alpha_bytes(a, sizeof(WideNode), counts);
 }
 
 // Of each ray with candidates at least one is written.

@@ -56,11 +56,13 @@ std::vector<std::string> mark_groups(std::vector<Step>& steps) {
   return groups;
 }
 
-// Without a tree there are no shadows.
+// Without a tree there are no shadows, and all is solid.
 EffectSet effects_for_view(const SceneOptions& options, const BuilderChoice& builder, const Scene& scene) {
   EffectSet effects = effects_of(scene, options.effects);
-  if (!builder.on_device() && builder.name == "none" && effects.has(Effect::shadows))
-    effects.override(Effect::shadows, false);
+  if (builder.on_device() || builder.name != "none") return effects;
+  for (const Effect effect : {Effect::shadows, Effect::alpha}) {
+    if (effects.has(effect)) effects.override(effect, false);
+  }
   return effects;
 }
 
@@ -84,7 +86,7 @@ OpenedScene open_for_view(const SceneOptions& options, const BuilderChoice& buil
   if (opened.has_instances && !kept.keep_instances)
     opened.scene = open_scene_with_room(kept, nullptr, {}, silently);
   opened.arrays = scene_arrays(opened.scene, effects_for_view(options, builder, opened.scene));
-  for (const std::string& warning : opened.arrays.textures.warnings) opened.scene.warnings.push_back(warning);
+  for (const std::string& warning : opened.arrays.image_warnings()) opened.scene.warnings.push_back(warning);
   opened.box = box_of_scene(opened.scene, opened.arrays);
   if (builder.on_device()) return opened;
   const auto start = std::chrono::steady_clock::now();

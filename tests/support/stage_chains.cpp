@@ -16,8 +16,8 @@
 #include "scene/hard_cases.h"
 #include "stages/stages.h"
 #include "support/instances.h"
+#include "support/masked_scene.h"
 #include "support/moving_scenes.h"
-#include "support/textured_scene.h"
 
 namespace coppice {
 namespace {
@@ -34,6 +34,7 @@ struct Frame {
   bool lights = false;   // two, which cast shadows
   bool refines = false;  // as a picture whose error is estimated
   bool textures = false;
+  bool alpha = false;
 };
 constexpr Frame frames[] = {
     {1000, DeviceBuilder::ploc, true, Walk::binary},
@@ -46,13 +47,17 @@ constexpr Frame frames[] = {
     {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 1, true, true},
     {300, DeviceBuilder::ploc, true, Walk::wide_single, SHOW_COLOR, 1, true, true},
     {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 2, true, false, true},
-    {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 1, true, false, false, true}};
+    {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 1, true, false, false, true},
+    {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 1, true, false, false, false, true},
+    {300, DeviceBuilder::ploc, true, Walk::wide_packets, SHOW_COLOR, 1, true, false, false, false, true},
+    {300, DeviceBuilder::ploc, true, Walk::wide_single, SHOW_COLOR, 1, true, false, false, false, true}};
 constexpr std::size_t scan_and_copy = std::size(frames), inputs = scan_and_copy + 1, vertices = inputs + 1,
                       refits = vertices + 1, instances = refits + 1, chain_count = instances + 1;
 
 Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
   Scene scene = frame.lights     ? triangles_over_plane(frame.triangles)
                 : frame.textures ? textured_scene(frame.triangles)
+                : frame.alpha    ? masked_scene(frame.triangles)
                                  : find_hard_case("nested")->make(frame.triangles, 1);
   if (frame.lights) {
     scene.light.shadows = true;
@@ -75,6 +80,7 @@ Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
   trace_options.keep_noise = trace_options.adaptive = frame.refines;
   trace_options.lights = arrays.light_counts;
   trace_options.textures = arrays.texture_counts();
+  trace_options.alpha = arrays.alpha_counts();
   std::optional<WidePlan> wide;
   if (is_wide(frame.walk)) wide = plan_wide(layout, build, &build);
   const TracePlan trace =
@@ -88,7 +94,8 @@ Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
                              layout.add<uint>("candidate_counts", trace.band_rays),
                              trace.counters,
                              {}};
-  const AnyHitSlots any{trace.rays, layout.add<uint>("any_hits", trace.band_rays), trace.counters, {}};
+  AnyHitSlots any{trace.rays, layout.add<uint>("any_hits", trace.band_rays), trace.counters, {}};
+  any.filter.alpha = trace.filter.alpha;
   LockstepExecutor executor(device, layout);
   Film film = make_film(scene, {}, chain_width, chain_height, frame.samples);
   film.is_sequence = frame.refines;
