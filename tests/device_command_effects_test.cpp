@@ -82,7 +82,7 @@ TEST_F(CommandEffects, ExplainNamesWhatCalledForEach) {
 
 TEST_F(CommandEffects, TheTableHasTheCostOfWhatIsOnAndZeroesForTheRest) {
   const json rich = report_of("effects scene.json")["effects"];
-  ASSERT_EQ(rich.size(), 3u);
+  ASSERT_EQ(rich.size(), 4u);
   EXPECT_EQ(rich[0]["name"], "lights");
   EXPECT_GT(rich[0]["rays"], 0) << "one of the points casts shadows";
   const json& shadows = rich[1];
@@ -129,6 +129,38 @@ TEST_F(CommandEffects, ATextureThatIsMissingIsNamedAndACheckerIsSeen) {
   EXPECT_EQ(std::ranges::count(kernels, "texture_hits"), 1);
   EXPECT_EQ(std::ranges::count(kernels, "shade_lights"), 0);
   EXPECT_GT(cost["bytes"], 0);
+}
+
+TEST_F(CommandEffects, AMapOfOpacityThatIsMissingIsNamedAndHolesAreSeen) {
+  write("leaf.mtl", "newmtl leaf\nKd 1 1 1\nmap_d gone.png\n");
+  write("leaf.obj",
+        "mtllib leaf.mtl\nusemtl leaf\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0.5 1\nf 1/1 2/2 "
+        "3/3\n");
+  const Outcome outcome = run("render leaf.obj -o out.png --size 32x32 --explain");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("alpha    on   called for by material 'leaf', which has gone.png\n"),
+            std::string::npos)
+      << outcome.out;
+  EXPECT_NE(
+      outcome.err.find("gone.png: no such file, a checker takes its place as map_d of material 'leaf'\n"),
+      std::string::npos)
+      << outcome.err;
+  const json with = report_of("render leaf.obj -o out.png --validate");
+  const json without = report_of("render leaf.obj -o out.png --effects=-alpha");
+  EXPECT_EQ(with["effects"], json({"ambient", "directional_light", "alpha"}));
+  EXPECT_NEAR(with["hits"].get<double>(), without["hits"].get<double>() / 2, 100);
+  const json cost = report_of("effects leaf.obj")["effects"][3];
+  EXPECT_EQ(cost["name"], "alpha");
+  const std::vector<std::string> kernels = cost["kernels"];
+  EXPECT_EQ(std::ranges::count_if(kernels, [](const std::string& name) { return name.ends_with("_alpha"); }),
+            1);
+  EXPECT_GT(cost["bytes"], 0);
+  EXPECT_TRUE(report_of("lockstep leaf.obj --effects +shadows")["equal"]);
+  EXPECT_EQ(report_of("animate leaf.obj --frames 1")["frame_hashes"][0], with["image_hash"]);
+  fs::remove("out.png");
+  expect_refused("render leaf.obj -o out.png --builder none", 1,
+                 "--builder none: alpha is looked at on the way through a tree");
+  EXPECT_EQ(report_of("render leaf.obj -o out.png --builder none --effects=-alpha")["hits"], without["hits"]);
 }
 
 TEST_F(CommandEffects, AnimateAndLockstepTakeThem) {

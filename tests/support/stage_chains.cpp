@@ -34,7 +34,7 @@ struct Frame {
   bool lights = false;   // two, which cast shadows
   bool refines = false;  // as a picture whose error is estimated
   bool textures = false;
-  bool alpha = false;
+  bool alpha = false;  // with lights
 };
 constexpr Frame frames[] = {
     {1000, DeviceBuilder::ploc, true, Walk::binary},
@@ -48,16 +48,16 @@ constexpr Frame frames[] = {
     {300, DeviceBuilder::ploc, true, Walk::wide_single, SHOW_COLOR, 1, true, true},
     {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 2, true, false, true},
     {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 1, true, false, false, true},
-    {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 1, true, false, false, false, true},
-    {300, DeviceBuilder::ploc, true, Walk::wide_packets, SHOW_COLOR, 1, true, false, false, false, true},
-    {300, DeviceBuilder::ploc, true, Walk::wide_single, SHOW_COLOR, 1, true, false, false, false, true}};
+    {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 1, true, true, false, false, true},
+    {300, DeviceBuilder::ploc, true, Walk::wide_packets, SHOW_COLOR, 1, true, true, false, false, true},
+    {300, DeviceBuilder::ploc, true, Walk::wide_single, SHOW_COLOR, 1, true, true, false, false, true}};
 constexpr std::size_t scan_and_copy = std::size(frames), inputs = scan_and_copy + 1, vertices = inputs + 1,
                       refits = vertices + 1, instances = refits + 1, chain_count = instances + 1;
 
 Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
-  Scene scene = frame.lights     ? triangles_over_plane(frame.triangles)
+  Scene scene = frame.alpha      ? masked_scene(frame.triangles)
+                : frame.lights   ? triangles_over_plane(frame.triangles)
                 : frame.textures ? textured_scene(frame.triangles)
-                : frame.alpha    ? masked_scene(frame.triangles)
                                  : find_hard_case("nested")->make(frame.triangles, 1);
   if (frame.lights) {
     scene.light.shadows = true;
