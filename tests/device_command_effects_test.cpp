@@ -163,6 +163,26 @@ TEST_F(CommandEffects, AMapOfOpacityThatIsMissingIsNamedAndHolesAreSeen) {
   EXPECT_EQ(report_of("render leaf.obj -o out.png --builder none --effects=-alpha")["hits"], without["hits"]);
 }
 
+TEST_F(CommandEffects, AColourMapThatIsACutOutIsSeenAsOne) {
+  std::string image(18, '\0');  // a TGA of a hole and a solid texel
+  image[2] = 2, image[12] = 2, image[14] = 1, image[16] = 32, image[17] = 0x28;
+  write("leaf.tga", image + std::string(4, '\0') + std::string(4, '\xff'));
+  write("leaf.mtl", "newmtl leaf\nmap_Kd leaf.tga\n");
+  write("leaf.obj",
+        "mtllib leaf.mtl\nusemtl leaf\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0.25 0\nvt 0.75 0\n"
+        "f 1/1 2/2 3/2 4/1\n");
+  const Outcome outcome = run("render leaf.obj -o out.png --size 32x32 --explain");
+  EXPECT_NE(outcome.out.find("alpha    on   called for by material 'leaf', which has leaf.tga\n"),
+            std::string::npos)
+      << outcome.out << outcome.err;
+  const std::string straight = " --camera 0,0,4,0,0,0";  // both halves are as large
+  const json with = report_of("render leaf.obj -o out.png" + straight);
+  const json without = report_of("render leaf.obj -o out.png --effects=-alpha" + straight);
+  EXPECT_NEAR(with["hits"].get<double>(), without["hits"].get<double>() / 2, 50);
+  EXPECT_EQ(report_of("animate leaf.obj --frames 1" + straight)["frame_hashes"][0], with["image_hash"]);
+  EXPECT_TRUE(report_of("lockstep leaf.obj")["equal"]);
+}
+
 TEST_F(CommandEffects, AnimateAndLockstepTakeThem) {
   const json frames = report_of("animate scene.json --frames 2");
   EXPECT_NE(frames["frame_hashes"],

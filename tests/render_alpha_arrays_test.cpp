@@ -1,6 +1,7 @@
 // What materials say of opacity, as the traces take it.
 #include "render/alpha_arrays.h"
 #include "render/texture_arrays.h"
+#include "scene/texture.h"
 #include "support/gltf_text.h"
 #include "support/masked_scene.h"
 #include "support/obj_folder.h"
@@ -109,6 +110,38 @@ TEST_F(AlphaFiles, OpacityIsAlphaWhereThereIsSomeElseLuminance) {
             (Codes{0x80, 0xff}));
 }
 
+TEST_F(AlphaFiles, AColourMapThatIsACutOutCutsOut) {
+  // So many texels with each alpha.
+  const auto cuts = [&](const std::string& statements, const std::vector<std::pair<int, int>>& counts) {
+    std::string texels;
+    for (const auto& [alpha, count] : counts) {
+      for (int i = 0; i < count; ++i) texels += std::string("\x10\x20\x30") + static_cast<char>(alpha);
+    }
+    const auto side = static_cast<std::uint16_t>(texels.size() / 4);
+    std::string bytes = tga_of(side, 1, {});
+    bytes[16] = 32;
+    bytes[17] = 0x28;
+    write("leaf.tga", bytes + texels);
+    Scene scene = with_material(statements);
+    EXPECT_FALSE(scene.materials[1].opacity_map && scene.materials[1].opacity_map.channel == 'm');
+    find_cut_outs(scene);
+    const TextureMap& map = scene.materials[1].opacity_map;
+    return map && map.channel == 'm' && map.name == "leaf.tga";
+  };
+  EXPECT_TRUE(cuts("map_Kd leaf.tga\n", {{0, 1}, {255, 1}}));
+  EXPECT_TRUE(cuts("map_Kd leaf.tga\n", {{15, 1}, {240, 99}}));
+  EXPECT_TRUE(cuts("map_Kd leaf.tga\n", {{0, 50}, {255, 25}, {128, 25}}));
+  EXPECT_FALSE(cuts("map_Kd leaf.tga\n", {{0, 50}, {255, 24}, {128, 26}})) << "soft";
+  EXPECT_FALSE(cuts("map_Kd leaf.tga\n", {{255, 100}}));
+  EXPECT_FALSE(cuts("map_Kd leaf.tga\n", {{0, 100}})) << "nothing would be left";
+  EXPECT_FALSE(cuts("map_Kd leaf.tga\n", {{0, 1}, {255, 199}}));
+  EXPECT_FALSE(cuts("map_Ke leaf.tga\n", {{0, 1}, {255, 1}}));
+  EXPECT_FALSE(cuts("map_Kd leaf.tga\nmap_d other.png\n", {{0, 1}, {255, 1}}));
+  EXPECT_FALSE(cuts("map_Kd gone.tga\n", {{0, 1}, {255, 1}}));
+  write("plain.tga", tga_of(2, 1, {0, 0xffffff}));
+  EXPECT_FALSE(cuts("map_Kd plain.tga\n", {{0, 1}, {255, 1}}));
+}
+
 TEST_F(AlphaFiles, AMissingOneIsAChecker) {
   const AlphaArrays arrays = arrays_of(with_material("map_d gone.png\n"));
   ASSERT_EQ(arrays.warnings.size(), 1u);
@@ -127,6 +160,18 @@ TEST_F(AlphaFiles, OpacityOutOfRangeIsBroughtIntoIt) {
   EXPECT_TRUE(arrays_of(with_material("d 1e99\n")).empty());
   const AlphaArrays half = arrays_of(with_material("Tr 0.75\n"));
   EXPECT_EQ(half.maps.at(half.triangles.at(0).map).threshold, 1020);
+}
+
+// Of an opaque one alpha means nothing.
+TEST(GltfAlpha, OpaqueImagesAreNoCutOuts) {
+  GltfText text = gltf_triangle();
+  text.json["meshes"][0]["primitives"][0]["material"] = 0;
+  text.json["textures"] = {{{"source", 0}}};
+  text.json["images"] = {{{"uri", "leaf.png"}}};
+  text.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+  Scene scene = read_gltf(text.embedded());
+  EXPECT_TRUE(scene.materials[1].diffuse_map);
+  EXPECT_FALSE(scene.materials[1].diffuse_map.may_cut_out);
 }
 
 TEST(GltfAlpha, ModesMeanWhatTheySay) {

@@ -119,6 +119,11 @@ EffectSet EffectChanges::applied_to(EffectSet effects) const {
   return effects;
 }
 
+bool EffectChanges::turns_off(Effect effect) const {
+  const EffectSet::State state = applied_to({}).of(effect);
+  return state.overridden && !state.on;
+}
+
 EffectChanges EffectChanges::but(Effect effect, bool on) const {
   EffectChanges changes = *this;
   changes.changes_.push_back({effect, on});

@@ -58,6 +58,7 @@ class EffectChanges {
   EffectSet applied_to(EffectSet effects) const;
   // With one change more.
   EffectChanges but(Effect effect, bool on) const;
+  bool turns_off(Effect effect) const;
   bool empty() const { return changes_.empty(); }
   const std::string& text() const { return text_; }
 

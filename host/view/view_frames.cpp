@@ -9,6 +9,7 @@
 #include "pipeline/bounded_submits.h"
 #include "render/moving_tree.h"
 #include "render/scene_room.h"
+#include "scene/texture.h"
 #include "stages/errors.h"
 
 namespace coppice {
@@ -78,13 +79,16 @@ OpenedScene open_for_view(const SceneOptions& options, const BuilderChoice& buil
   opened.builder = builder;
   SceneOptions kept = options;
   kept.keep_instances = true;
-  const auto silently = [](const std::string&) {};
-  opened.scene = open_scene_with_room(kept, nullptr, {}, silently);
+  const auto open = [&] {
+    Scene scene = open_scene_with_room(kept, nullptr, {}, [](const std::string&) {});
+    if (!options.effects.turns_off(Effect::alpha)) find_cut_outs(scene);
+    return scene;
+  };
+  opened.scene = open();
   opened.has_instances = !opened.scene.instances.empty();
   kept.keep_instances =
       options.keep_instances && !effects_of(opened.scene, options.effects).needs_one_level();
-  if (opened.has_instances && !kept.keep_instances)
-    opened.scene = open_scene_with_room(kept, nullptr, {}, silently);
+  if (opened.has_instances && !kept.keep_instances) opened.scene = open();
   opened.arrays = scene_arrays(opened.scene, effects_for_view(options, builder, opened.scene));
   for (const std::string& warning : opened.arrays.image_warnings()) opened.scene.warnings.push_back(warning);
   opened.box = box_of_scene(opened.scene, opened.arrays);
