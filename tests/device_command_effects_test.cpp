@@ -22,6 +22,14 @@ class CommandEffects : public Command {
                   { "position": [0, 3, 1], "shadows": true }, { "position": [2, 2, 2] } ] })");
   }
 
+  // A triangle with a texture that is not there.
+  static void write_wall() {
+    write("wall.mtl", "newmtl wall\nKd 1 1 1\nmap_Kd gone.png\n");
+    write("wall.obj",
+          "mtllib wall.mtl\nusemtl wall\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0.5 1\n"
+          "f 1/1 2/2 3/3\n");
+  }
+
   static json report_of(const std::string& arguments) {
     const Outcome outcome = run(arguments + " --size 64x48 --json -");
     EXPECT_EQ(outcome.status, 0) << arguments << ": " << outcome.err;
@@ -106,19 +114,12 @@ TEST_F(CommandEffects, TheTableHasTheCostOfWhatIsOnAndZeroesForTheRest) {
 }
 
 TEST_F(CommandEffects, ATextureThatIsMissingIsNamedAndACheckerIsSeen) {
-  write("wall.mtl", "newmtl wall\nKd 1 1 1\nmap_Kd gone.png\n");
-  write("wall.obj",
-        "mtllib wall.mtl\nusemtl wall\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0.5 1\nf 1/1 2/2 "
-        "3/3\n");
+  write_wall();
   const Outcome outcome = run("render wall.obj -o out.png --size 32x32 --explain");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("textures on   called for by material 'wall', which has gone.png\n"),
             std::string::npos)
       << outcome.out;
-  EXPECT_NE(
-      outcome.err.find("gone.png: no such file, a checker takes its place as map_Kd of material 'wall'\n"),
-      std::string::npos)
-      << outcome.err;
   const Outcome without = run("render wall.obj -o out.png --size 32x32 --effects=-textures");
   EXPECT_EQ(without.err.find("gone.png"), std::string::npos) << without.err;
   EXPECT_NE(report_of("render wall.obj -o out.png")["image_hash"],
@@ -129,6 +130,20 @@ TEST_F(CommandEffects, ATextureThatIsMissingIsNamedAndACheckerIsSeen) {
   EXPECT_EQ(std::ranges::count(kernels, "texture_hits"), 1);
   EXPECT_EQ(std::ranges::count(kernels, "shade_lights"), 0);
   EXPECT_GT(cost["bytes"], 0);
+}
+
+// Whatever makes the picture, and however often its arrays are looked at.
+TEST_F(CommandEffects, EveryCommandWarnsOnceOfATextureThatIsMissing) {
+  write_wall();
+  for (const char* command :
+       {"render wall.obj -o out.png", "render wall.obj -o out.png --tracer cpu", "effects wall.obj",
+        "lockstep wall.obj", "animate wall.obj --frames 2", "animate wall.obj --frames 30 --tree binary"}) {
+    const Outcome outcome = run(std::string(command) + " --size 16x16");
+    EXPECT_EQ(outcome.status, 0) << command << ": " << outcome.err;
+    EXPECT_EQ(without_notes(outcome.err),
+              "warning: gone.png: no such file, a checker takes its place as map_Kd of material 'wall'\n")
+        << command;
+  }
 }
 
 TEST_F(CommandEffects, AnimateAndLockstepTakeThem) {

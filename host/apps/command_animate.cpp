@@ -126,7 +126,6 @@ class AnimateCommand : public Command {
     if (!cycle) print_note(why_still(scene));
     AnimateRuns runs{.builder = builder_, .trace = picture_.trace, .camera = picture_.camera};
     runs.update = update_;
-    runs.effects = scene_.effects;
     runs.tree_cost = tree_cost_ || !files.plot.empty() || !files.csv.empty();
     runs.first = first_;
     runs.last = last_;
@@ -144,9 +143,10 @@ class AnimateCommand : public Command {
     if (!scene.instances.empty()) runs.trace.walk = Walk::binary;
     std::vector<Walk> walks = {runs.trace.walk};
     if (tries_walks_ && scene.instances.empty()) walks = {Walk::binary, device.wide_walk()};
-    runs.tried =
-        choose_tree(device, scene, runs, builders_.empty() ? std::vector{builder_.name} : builders_, walks);
-    const AnimateReport report = animate(device, scene, runs);
+    SceneArrays arrays = picture_arrays(scene, scene_.effects);
+    runs.tried = choose_tree(device, scene, arrays, runs,
+                             builders_.empty() ? std::vector{builder_.name} : builders_, walks);
+    const AnimateReport report = animate(device, scene, std::move(arrays), runs);
     if (files.talks()) print(text_of(report));
     if (!files.csv.empty()) write_file(files.csv, to_csv(report));
     if (!files.plot.empty()) write_file(files.plot, to_svg(report));

@@ -35,7 +35,7 @@ class EffectsCommand : public Command {
     frame.camera = picture_.camera;
     frame.runs = runs_;
     frame.effects = scene_.effects;
-    const EffectsReport report = measure_effects(device, scene, frame);
+    const EffectsReport report = measure_effects(device, scene, picture_arrays(scene, frame.effects), frame);
     if (files.talks()) print(text_of(report, frame));
     write_json(files.json, to_json(report, frame));
     return validation_status(device);

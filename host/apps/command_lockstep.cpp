@@ -29,8 +29,7 @@ class LockstepCommand : public Command {
 
   int run() override {
     const Scene scene = open_scene_of(scene_, builder_, device_, true);
-    const SceneArrays arrays = scene_arrays(scene, effects_of(scene, scene_.effects));
-    for (const std::string& warning : arrays.textures.warnings) print_note(warning);
+    const SceneArrays arrays = picture_arrays(scene, scene_.effects);
     const TraceOptions& trace = picture_.trace;
     const BuildOptions least = builder_.least_build_options();
     CheckedDevice device = open_device(device_, {true, least, {trace}, arrays.triangle_count()});

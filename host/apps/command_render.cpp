@@ -158,10 +158,11 @@ class RenderCommand : public Command {
   }
 
   FrameReport measured(CheckedDevice* device, const Scene& scene, FrameRuns& frame) const {
-    if (!traces_on_device()) return measure_host_frame(device, scene, frame, print_note);
+    const SceneArrays arrays = picture_arrays(scene, frame.effects);
+    if (!traces_on_device()) return measure_host_frame(device, scene, arrays, frame, print_note);
     frame.trace = device->picture_options(frame.trace, static_cast<std::uint32_t>(scene.indices.size()));
     if (!scene.instances.empty()) frame.trace.walk = Walk::binary;
-    return measure_frame(*device, scene, frame);
+    return measure_frame(*device, scene, arrays, frame);
   }
 
   std::string tracer_ = "gpu";

@@ -98,13 +98,12 @@ MovingOptions moving_options(const CheckedDevice& device, const AnimateRuns& run
                              std::uint32_t morton_bits) {
   return {.build = device.build_options(runs.builder.build_options(morton_bits)),
           .trace = runs.trace,
-          .effects = runs.effects,
           .update = runs.update,
           .tree_cost = runs.tree_cost};
 }
 
-AnimateReport animate(CheckedDevice& device, const Scene& scene, const AnimateRuns& runs) {
-  const SceneArrays arrays = scene_arrays(scene);
+AnimateReport animate(CheckedDevice& device, const Scene& scene, SceneArrays arrays,
+                      const AnimateRuns& runs) {
   AnimateReport report;
   report.scene = scene.name;
   report.builder = runs.builder.name;
@@ -121,7 +120,8 @@ AnimateReport animate(CheckedDevice& device, const Scene& scene, const AnimateRu
   report.frames_per_second = runs.frames_per_second;
   report.update = runs.update;
   report.tree_cost = runs.tree_cost;
-  MovingFrames frames(device.device(), scene, moving_options(device, runs, report.morton_bits));
+  MovingFrames frames(device.device(), scene, arrays, moving_options(device, runs, report.morton_bits));
+  arrays = {};  // the device has them
   report.device_bytes = device_bytes(frames.layout());
   const Films films(scene, runs);
   const InterruptionGuard guard;

@@ -86,17 +86,18 @@ RecordedPicture recorded_picture(const SceneArrays& arrays, const FrameOptions& 
   return recorded;
 }
 
-EffectsReport measure_effects(CheckedDevice& device, const Scene& scene, const FrameRuns& given) {
+EffectsReport measure_effects(CheckedDevice& device, const Scene& scene, const SceneArrays& arrays,
+                              const FrameRuns& given) {
   FrameRuns frame = given;
   frame.split = true;
   const EffectSet effects = effects_of(scene, frame.effects);
-  const auto recorded_with = [&](const EffectSet& set) {
+  const auto recorded = [&](const SceneArrays& with) {
     FrameOptions options{.trace = frame.trace};
     if (frame.builder.on_device()) options.build = device.build_options(frame.builder.least_build_options());
-    return recorded_picture(scene_arrays(scene, set), options);
+    return recorded_picture(with, options);
   };
-  const RecordedPicture all = recorded_with(effects);
-  const FrameReport with = measure_frame(device, scene, frame);
+  const RecordedPicture all = recorded(arrays);
+  const FrameReport with = measure_frame(device, scene, arrays, frame);
   EffectsReport report{scene.name, with.trace_device, with.trace_ms, with.rays, {}};
   for (std::size_t i = 0; i < effect_count; ++i) {
     const Effect effect = static_cast<Effect>(i);
@@ -105,11 +106,12 @@ EffectsReport measure_effects(CheckedDevice& device, const Scene& scene, const F
     if (cost.state.on) {
       FrameRuns other = frame;
       other.effects = frame.effects.but(effect, false);
-      const RecordedPicture rest = recorded_with(effects_of(scene, other.effects));
+      const SceneArrays other_arrays = scene_arrays(scene, effects_of(scene, other.effects));
+      const RecordedPicture rest = recorded(other_arrays);
       cost.kernels = less(all.kernels, rest.kernels);
       cost.instead_of = less(rest.kernels, all.kernels);
       cost.bytes = static_cast<std::int64_t>(all.device_bytes) - static_cast<std::int64_t>(rest.device_bytes);
-      const FrameReport without = measure_frame(device, scene, other);
+      const FrameReport without = measure_frame(device, scene, other_arrays, other);
       cost.rays = with.shadow.rays - without.shadow.rays;
       cost.ms = ms_between(cost, with.kernels, without.kernels);
     }

@@ -220,10 +220,9 @@ void read_picture(const GpuExecutor& executor, const FramePlan& plan, const Film
 
 }  // namespace
 
-FrameReport measure_frame(CheckedDevice& device, const Scene& scene, const FrameRuns& frame) {
-  const SceneArrays arrays = scene_arrays(scene, effects_of(scene, frame.effects));
+FrameReport measure_frame(CheckedDevice& device, const Scene& scene, const SceneArrays& arrays,
+                          const FrameRuns& frame) {
   FrameReport report;
-  for (const std::string& warning : arrays.textures.warnings) device.notes()(warning);
   report.trace_device = device.properties().name + ", " + device.properties().driver;
   report.build = report_for(frame.builder, scene, arrays.triangles, device.notes());
   FrameOptions options{.trace = frame.trace};

@@ -9,6 +9,7 @@
 #include "measure/refine.h"
 #include "pipeline/checked_device.h"
 #include "pipeline/trace_plan.h"
+#include "render/scene_arrays.h"
 #include "render/show.h"
 #include "scene/effect_set.h"
 
@@ -52,12 +53,13 @@ struct FrameReport {
 
 // Builds in one submit and traces in as many as keep each short, with nothing but times read back in between;
 // with a CPU builder its tree is uploaded before. Throws Interrupted on SIGINT or SIGTERM between two
-// submits.
-FrameReport measure_frame(CheckedDevice& device, const Scene& scene, const FrameRuns& frame);
+// submits. `arrays` are the scene's, with the effects that the frame says.
+FrameReport measure_frame(CheckedDevice& device, const Scene& scene, const SceneArrays& arrays,
+                          const FrameRuns& frame);
 
 // Traces by the independent CPU tracer; shades by the twins. With a builder on the device `device` builds the
 // tree. Throws Interrupted as well.
-FrameReport measure_host_frame(CheckedDevice* device, const Scene& scene, const FrameRuns& frame,
-                               const Note& note);
+FrameReport measure_host_frame(CheckedDevice* device, const Scene& scene, const SceneArrays& arrays,
+                               const FrameRuns& frame, const Note& note);
 
 }  // namespace coppice

@@ -138,11 +138,9 @@ void trace_on_host(CpuExecutor& executor, const FramePlan& plan, const Bvh& bvh,
 
 }  // namespace
 
-FrameReport measure_host_frame(CheckedDevice* device, const Scene& scene, const FrameRuns& frame,
-                               const Note& note) {
-  const SceneArrays arrays = scene_arrays(scene, effects_of(scene, frame.effects));
+FrameReport measure_host_frame(CheckedDevice* device, const Scene& scene, const SceneArrays& arrays,
+                               const FrameRuns& frame, const Note& note) {
   FrameReport report;
-  for (const std::string& warning : arrays.textures.warnings) note(warning);
   report.trace_device = "host CPU";
   report.build = report_for(frame.builder, scene, arrays.triangles, note);
   Bvh bvh;

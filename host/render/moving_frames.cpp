@@ -66,16 +66,20 @@ FramePlan MovingFrames::plan_all(MovingFrames& frames, const SceneArrays& arrays
 }
 
 MovingFrames::MovingFrames(Device& device, const Scene& scene, const MovingOptions& options)
+    : MovingFrames(device, scene, scene_arrays(scene, effects_of(scene, options.effects)), options) {}
+
+MovingFrames::MovingFrames(Device& device, const Scene& scene, const SceneArrays& arrays,
+                           const MovingOptions& options)
     : scene_(scene),
       motion_(motion_of(scene)),
       options_(for_scene(options, scene)),
       layout_(device.properties().max_block_bytes),
-      plan_(plan_all(*this, scene_arrays(scene, effects_of(scene, options.effects)))),
+      plan_(plan_all(*this, arrays)),
       executor_(device, layout_),
       measures_(device.properties().timestamp_period_ns > 0),
       chooser_(chooser()) {
   if (options_.under_way == 0) throw std::invalid_argument("no frame may be under way");
-  upload_scene(scene);
+  upload_scene(arrays);
   build_what_stands_still();
   const auto record = [&](const FrameSlots& slots, bool rebuilds) {
     Chain chain = executor_.chain();
@@ -88,11 +92,10 @@ MovingFrames::MovingFrames(Device& device, const Scene& scene, const MovingOptio
   }
 }
 
-void MovingFrames::upload_scene(const Scene& scene) {
-  const SceneArrays arrays = scene_arrays(scene, effects_of(scene, options_.effects));
+void MovingFrames::upload_scene(const SceneArrays& arrays) {
   upload_frame(executor_, plan_, arrays, Film{});
-  upload_moving_instances(executor_, instances_, scene, arrays);
-  if (!plan_.levels) upload_vertices(executor_, vertices_, motion_, std::span<const uvec3>(scene.indices));
+  upload_moving_instances(executor_, instances_, scene_, arrays);
+  if (!plan_.levels) upload_vertices(executor_, vertices_, motion_, std::span<const uvec3>(scene_.indices));
 }
 
 // Each in a submit of its own, as nobody waits for a frame yet. Where nothing moves, the tree over the

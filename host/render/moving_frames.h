@@ -53,7 +53,9 @@ class MovingFrames {
  public:
   // Throws DeviceError if the device's memory does not hold it or a mesh's tree does not come out,
   // LayoutError if a slot is too large, and what plan_vertices and plan_frame throw. Device and scene must
-  // outlive it.
+  // outlive it; the scene's arrays, with the effects that are wanted, need not.
+  MovingFrames(Device& device, const Scene& scene, const SceneArrays& arrays, const MovingOptions& options);
+  // With the arrays of the options' effects; nobody is told of their warnings.
   MovingFrames(Device& device, const Scene& scene, const MovingOptions& options);
   ~MovingFrames();
   MovingFrames(const MovingFrames&) = delete;
@@ -118,7 +120,7 @@ class MovingFrames {
   void append_picture(Chain& chain, const FrameSlots& slots) const;
   const FrameSlots& last_slots() const { return slots_[(next_slot_ + slots_.size() - 1) % slots_.size()]; }
   void append_tree(Chain& chain, bool rebuilds) const;
-  void upload_scene(const Scene& scene);
+  void upload_scene(const SceneArrays& arrays);
   void build_what_stands_still();
   void tell(const Told& told, double seconds, const Film& film);
   UpdateChooser chooser() const;
