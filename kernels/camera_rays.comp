@@ -7,21 +7,14 @@
 #include "lib/camera_ray.glsl"
 #include "lib/film_pixel.glsl"
 #include "lib/ray_words.glsl"
+#include "lib/sampler.glsl"
 
 layout(local_size_x = CAMERA_RAYS_GROUP) in;
 layout(push_constant, scalar) uniform Push { CameraRaysArgs args; };
 layout(constant_id = 0) const uint CAMERA_RAYS_IS_LIST = 0u;
 
-uint sobol_digits(uint index) {
-  uint digits = 0u;
-  [[dont_unroll]] for (uint column = 0x80000000u; index != 0u; index >>= 1, column ^= column >> 1) {
-    if ((index & 1u) != 0u) digits ^= column;
-  }
-  return digits;
-}
-
 vec2 sequence_point(uint index) {
-  uvec2 digits = uvec2(bitfieldReverse(index), sobol_digits(index)) ^ 0x80000000u;
+  uvec2 digits = bitfieldReverse(uvec2(index, sobol_second(index))) ^ 0x80000000u;
   return vec2(digits >> 8) * 5.9604644775390625e-8;
 }
 
