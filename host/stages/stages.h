@@ -12,6 +12,7 @@
 #include "interface/refine.h"
 #include "interface/refit.h"
 #include "interface/scan.h"
+#include "interface/shade.h"
 #include "interface/show.h"
 #include "interface/sort.h"
 #include "interface/texture_hits.h"

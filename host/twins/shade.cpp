@@ -1,4 +1,4 @@
-#include "interface/trace.h"
+#include "interface/shade.h"
 #include "twins/material_of.h"
 #include "twins/shading.h"
 

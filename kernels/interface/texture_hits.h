@@ -2,7 +2,7 @@
 #ifndef COPPICE_INTERFACE_TEXTURE_HITS_H
 #define COPPICE_INTERFACE_TEXTURE_HITS_H
 #include "texture.h"
-#include "trace.h"
+#include "shade.h"
 INTERFACE_BEGIN
 
 const uint TEXTURE_HITS_GROUP = 64;
