@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "view/view_frames.h"
+#include "view/opened_scene.h"
 
 namespace coppice {
 

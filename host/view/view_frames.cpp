@@ -1,14 +1,12 @@
 #include "view/view_frames.h"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "analysis/quality.h"
 #include "measure/show_frame.h"
 #include "pipeline/bounded_submits.h"
 #include "render/moving_tree.h"
-#include "render/scene_room.h"
 #include "stages/errors.h"
 
 namespace coppice {
@@ -56,47 +54,7 @@ std::vector<std::string> mark_groups(std::vector<Step>& steps) {
   return groups;
 }
 
-// Without a tree there are no shadows.
-EffectSet effects_for_view(const SceneOptions& options, const BuilderChoice& builder, const Scene& scene) {
-  EffectSet effects = effects_of(scene, options.effects);
-  if (!builder.on_device() && builder.name == "none" && effects.has(Effect::shadows))
-    effects.override(Effect::shadows, false);
-  return effects;
-}
-
 }  // namespace
-
-bool keeps_instances(const BuilderChoice& builder, const WalkChoice& walk) {
-  return builder.on_device() && walk.allows_binary();
-}
-
-OpenedScene open_for_view(const SceneOptions& options, const BuilderChoice& builder) {
-  OpenedScene opened;
-  opened.options = options;
-  opened.builder = builder;
-  SceneOptions kept = options;
-  kept.keep_instances = true;
-  const auto silently = [](const std::string&) {};
-  opened.scene = open_scene_with_room(kept, nullptr, {}, silently);
-  opened.has_instances = !opened.scene.instances.empty();
-  kept.keep_instances =
-      options.keep_instances && !effects_of(opened.scene, options.effects).needs_one_level();
-  if (opened.has_instances && !kept.keep_instances)
-    opened.scene = open_scene_with_room(kept, nullptr, {}, silently);
-  opened.arrays = scene_arrays(opened.scene, effects_for_view(options, builder, opened.scene));
-  for (const std::string& warning : opened.arrays.textures.warnings) opened.scene.warnings.push_back(warning);
-  opened.box = box_of_scene(opened.scene, opened.arrays);
-  if (builder.on_device()) return opened;
-  const auto start = std::chrono::steady_clock::now();
-  const BuilderConfig config{.radius = builder.radius,
-                             .morton_bits = builder.bits_for(opened.arrays.triangles),
-                             .leaf_size = builder.leaf_size};
-  opened.bvh = find_cpu_builder(builder.name).build(opened.arrays.triangles, config);
-  check_height(opened.bvh);
-  opened.build_ms =
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  return opened;
-}
 
 FramePlan ViewFrames::plan_all(ViewFrames& frames, CheckedDevice& device) {
   const OpenedScene& opened = frames.opened_;
