@@ -126,7 +126,9 @@ TEST(Effects, ChangesThatNobodyKnowsAreNamed) {
     }
     return "";
   };
-  const std::string all = " is no + or - and an effect behind it: there are lights, shadows, textures";
+  const std::string all =
+      " is no + or - and an effect behind it: there are lights, shadows, textures, "
+      "depth_of_field";
   EXPECT_EQ(error_of("+fog"), "'+fog'" + all);
   EXPECT_EQ(error_of("shadows"), "'shadows'" + all);
   EXPECT_EQ(error_of("+"), "'+'" + all);
@@ -211,6 +213,26 @@ TEST(Effects, TexturesRecordOneStageMoreAndOpenNoImageWhereTheyAreOff) {
     EXPECT_FALSE(has_slot(without, slot)) << slot;
   }
   EXPECT_TRUE(scene_arrays(scene).textures.empty()) << "for trees alone";
+}
+
+TEST(Effects, AnApertureCallsForDepthOfFieldWhichChangesAKernelAndAddsNone) {
+  json file = with_object();
+  file["camera"] = {{"position", {0, 0, 4}}, {"target", {0, 0, 0}}, {"aperture", 0.25}, {"focus", 3}};
+  Scene scene = read_scene(file);
+  EXPECT_EQ(caller(scene, Effect::depth_of_field), "/camera/aperture");
+  EXPECT_FALSE(effects_of(scene).needs_one_level());
+  const RecordedPicture blurred = recorded(scene, "", 2), sharp = recorded(scene, "-depth_of_field", 2);
+  EXPECT_EQ(kernels_of(blurred), kernels_of(sharp));
+  EXPECT_EQ(blurred.device_bytes, sharp.device_bytes);
+  EXPECT_EQ(blurred.effect_steps[3], 2u);
+  EXPECT_EQ(sharp.effect_steps[3], 0u);
+  const RecordedPicture wide = recorded(scene, "", 1, Walk::wide_packets);
+  EXPECT_EQ(kernels_of(wide), "camera_rays*1 trace_wide*1 shade*1 resolve*1");
+  EXPECT_EQ(kernels_of(recorded(scene, "-depth_of_field", 1, Walk::wide_packets)), "trace_pixels*1");
+  scene.lens.aperture = 0;
+  EXPECT_EQ(caller(scene, Effect::depth_of_field), "");
+  EXPECT_EQ(kernels_of(recorded(scene, "+depth_of_field", 1, Walk::wide_packets)), "trace_pixels*1")
+      << "without an aperture there is nothing to do";
 }
 
 TEST(Effects, ViewsThatShowNoColoursHaveNone) {

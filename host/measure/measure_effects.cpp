@@ -12,8 +12,12 @@ namespace {
 
 using Kernel = RecordedPicture::Kernel;
 
-// Whether a step is there for this effect alone.
+// Whether a step is there, or has its kernel, for this effect alone.
 bool belongs_to(const Step& step, Effect effect) {
+  if (effect == Effect::depth_of_field) {
+    const CameraRaysArgs* const rays = args_of(step, stages::camera_rays);
+    return rays && rays->has_lens != 0;
+  }
   if (effect == Effect::textures) return stage_of(step) == &stages::texture_hits;
   const ShadeLightsArgs* const shading = args_of(step, stages::shade_lights);
   if (shading) return (shading->marks.value != 0) == (effect == Effect::shadows);
@@ -53,7 +57,7 @@ double ms_of(const KernelTable& table, const std::string& name) {
   return row == table.rows.end() ? 0 : row->ms;
 }
 
-// By the kernels of which one picture has more than the other.
+// By the kernels of which one picture has more than the other, and the one that rays through a lens are of.
 std::optional<double> ms_between(const EffectCost& cost, const KernelTable& with,
                                  const KernelTable& without) {
   if (with.untimed || without.untimed) return std::nullopt;
@@ -61,6 +65,8 @@ std::optional<double> ms_between(const EffectCost& cost, const KernelTable& with
   for (const std::vector<Kernel>* const kernels : {&cost.kernels, &cost.instead_of}) {
     for (const Kernel& kernel : *kernels) ms += ms_of(with, kernel.name) - ms_of(without, kernel.name);
   }
+  if (cost.effect == Effect::depth_of_field)
+    ms += ms_of(with, stages::camera_rays.name) - ms_of(without, stages::camera_rays.name);
   return ms;
 }
 
@@ -110,7 +116,8 @@ EffectsReport measure_effects(CheckedDevice& device, const Scene& scene, const F
       cost.instead_of = less(rest.kernels, all.kernels);
       cost.bytes = static_cast<std::int64_t>(all.device_bytes) - static_cast<std::int64_t>(rest.device_bytes);
       const FrameReport without = measure_frame(device, scene, other);
-      cost.rays = with.shadow.rays - without.shadow.rays;
+      // A lens sends rays elsewhere and adds none.
+      if (effect != Effect::depth_of_field) cost.rays = with.shadow.rays - without.shadow.rays;
       cost.ms = ms_between(cost, with.kernels, without.kernels);
     }
     report.costs.push_back(std::move(cost));

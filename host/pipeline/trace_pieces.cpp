@@ -75,8 +75,8 @@ void TracePieces::open_range(Chain& chain, std::uint64_t work) {
   chain.run(stages::camera_rays,
             {chain.at(plan_.film), chain.at(plan_.rays, range_.first), chain.at(plan_.hits, range_.first),
              address_or_null(chain, plan_.traced_pixels, band_first_ + range_.first),
-             band_first_ + range_.first, range_.count, sample_, 0},
-            groups_of(range_.count, CAMERA_RAYS_GROUP), {plan_.traced_pixels.count > 0});
+             band_first_ + range_.first, range_.count, sample_, plan_.options.lens},
+            groups_of(range_.count, CAMERA_RAYS_GROUP), {plan_.traced_pixels.count > 0, plan_.options.lens});
 }
 
 void TracePieces::append_traced_pixels(Chain& chain) const {

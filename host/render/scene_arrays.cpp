@@ -72,6 +72,7 @@ SceneArrays scene_arrays(const Scene& scene, const EffectSet& effects) {
   }
   arrays.material_index = scene.material_index;
   add_lights(arrays, scene, effects);
+  arrays.lens = effects.has(Effect::depth_of_field) && scene.lens.aperture > 0;
   if (effects.has(Effect::textures)) add_textures(arrays, scene);
   arrays.meshes = scene.meshes;
   for (const Instance& instance : scene.instances) {

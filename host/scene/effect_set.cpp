@@ -79,6 +79,7 @@ EffectSet effects_of(const Scene& scene, const EffectChanges& changes) {
     if (light.shadows) effects.call(Effect::shadows, light.origin + ", which casts shadows");
   }
   call_for_textures(scene, effects);
+  if (scene.lens.aperture > 0) effects.call(Effect::depth_of_field, scene.lens.origin);
   return changes.applied_to(effects);
 }
 

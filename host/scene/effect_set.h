@@ -13,9 +13,9 @@ namespace coppice {
 
 // What is simulated only where a scene calls for it. The table in docs/effects.md says what calls for which,
 // and what each adds.
-enum class Effect : std::uint32_t { lights, shadows, textures };
+enum class Effect : std::uint32_t { lights, shadows, textures, depth_of_field };
 
-inline constexpr std::string_view EFFECT_NAMES[] = {"lights", "shadows", "textures"};
+inline constexpr std::string_view EFFECT_NAMES[] = {"lights", "shadows", "textures", "depth_of_field"};
 inline constexpr std::size_t effect_count = std::size(EFFECT_NAMES);
 
 constexpr std::string_view name_of(Effect effect) { return EFFECT_NAMES[static_cast<std::size_t>(effect)]; }

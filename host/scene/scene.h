@@ -68,6 +68,13 @@ struct Camera {
   float vertical_fov_degrees = 40.0f;
 };
 
+// A thin lens in the place of the pinhole, whichever camera looks.
+struct Lens {
+  float aperture = 0.0f;  // diameter, in units of the scene; 0: a pinhole
+  float focus = 0.0f;     // depth along the line of sight that is sharp; 0: that of the camera's target
+  std::string origin;     // what the aperture is of, such as "/camera/aperture"
+};
+
 // Of a corner without texture coordinates, or without a normal.
 inline constexpr std::uint32_t NO_ATTRIBUTE = ~0u;
 
@@ -123,6 +130,7 @@ struct Scene {
   std::optional<Swarm> swarm;                      // none: the instances stand still
   std::vector<Material> materials = {Material{}};  // never empty
   std::optional<Camera> camera;                    // absent: frame_scene chooses one
+  Lens lens;
   // Of the faces of an OBJ or PLY file, before they are cut into triangles (FaceDigest); 0 of others.
   std::uint64_t face_digest = 0;
   DirectionalLight light;
@@ -148,8 +156,8 @@ void bring_into_range(Scene& scene);
 inline constexpr std::array<std::string_view, 6> UP_AXES = {"x", "y", "z", "-x", "-y", "-z"};
 
 // Turns the scene so that the axis `up`, one of UP_AXES, becomes +y. With z up, the file's y then points away
-// from the default camera, as north on a map. But for "y" the scene's own camera is dropped. The directional
-// light stays where it is, the others turn with the scene, and normals of what has no instances.
+// from the default camera, as north on a map. But for "y" the scene's own camera and lens are dropped. The
+// directional light stays where it is, the others turn with the scene, and normals of what has no instances.
 void stand_up(Scene& scene, std::string_view up);
 
 // A point or a direction of the file, as its user knows it, in the scene, and a point of the scene in the

@@ -30,22 +30,10 @@ struct TangentFrame {
   }
 };
 
-// Shirley and Chiu 1997, "A Low Distortion Map Between Disk and Square".
 vec3 cosine_direction(const vec3& normal, const glm::vec2& u) {
-  const float x = 2 * u.x - 1 + 0x1p-24f, y = 2 * u.y - 1 + 0x1p-24f;
-  float radius = y, on_disk_x = 0, on_disk_y = 0;
-  if (std::fabs(x) > std::fabs(y)) {
-    radius = x;
-    const OnCircle at = circle_beside_quarter(0, 0.5f * y / x);
-    on_disk_x = radius * at.cos;
-    on_disk_y = radius * at.sin;
-  } else {
-    const OnCircle at = circle_beside_quarter(0, y == 0 ? 0.0f : 0.5f * x / y);
-    on_disk_x = radius * at.sin;
-    on_disk_y = radius * at.cos;
-  }
-  const float height = std::sqrt(std::max((1 - radius) * (1 + radius), 0.0f));
-  return TangentFrame(normal).to_world(on_disk_x, on_disk_y, height);
+  const OnDisk at = disk_at(u);
+  const float height = std::sqrt(std::max((1 - at.radius) * (1 + at.radius), 0.0f));
+  return TangentFrame(normal).to_world(at.x, at.y, height);
 }
 
 // Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps".
