@@ -128,7 +128,7 @@ TEST(Effects, ChangesThatNobodyKnowsAreNamed) {
   };
   const std::string all =
       " is no + or - and an effect behind it: there are lights, shadows, textures, "
-      "depth_of_field";
+      "depth_of_field, ambient_occlusion";
   EXPECT_EQ(error_of("+fog"), "'+fog'" + all);
   EXPECT_EQ(error_of("shadows"), "'shadows'" + all);
   EXPECT_EQ(error_of("+"), "'+'" + all);
@@ -235,6 +235,40 @@ TEST(Effects, AnApertureCallsForDepthOfFieldWhichChangesAKernelAndAddsNone) {
       << "without an aperture there is nothing to do";
 }
 
+TEST(Effects, TheSceneFileCallsForAmbientOcclusion) {
+  json file = with_object();
+  file["ambient_occlusion"] = {{"distance", 0.5}};
+  const Scene scene = read_scene(file);
+  EXPECT_EQ(caller(scene, Effect::ambient_occlusion), "/ambient_occlusion");
+  EXPECT_TRUE(effects_of(scene).needs_one_level());
+  EXPECT_EQ(scene_arrays(scene).light_counts, (LightCounts{1, 0, false, true}));
+  const RecordedPicture on = recorded(scene, "", 2), off = recorded(scene, "-ambient_occlusion", 2);
+  EXPECT_EQ(kernels_of(on),
+            "camera_rays*2 trace_closest*2 shade*2 shade_lights*2 occlusion_marks*2 scan_tile_sums*2 "
+            "prefix_scan*4 occlusion_rays*2 trace_any*2 shade_ambient*2 resolve*1");
+  EXPECT_EQ(on.effect_steps[0], 0u);
+  EXPECT_EQ(on.effect_steps[1], 0u);
+  EXPECT_EQ(on.effect_steps[4], 2u * 8) << "the plain light is one of a list";
+  EXPECT_EQ(kernels_of(off), "camera_rays*2 trace_closest*2 shade*2 resolve*1");
+  EXPECT_EQ(off.effect_steps[4], 0u);
+  for (const char* slot : {"ambient_light", "occlusion_counters", "shadow_rays"}) {
+    EXPECT_TRUE(has_slot(on, slot)) << slot;
+    EXPECT_FALSE(has_slot(off, slot)) << slot;
+  }
+  EXPECT_FALSE(has_slot(on, "shadow_counters"));
+  const RecordedPicture turned_on = recorded(with_light(), "+ambient_occlusion");
+  EXPECT_EQ(turned_on.effect_steps[4], 8u);
+  const RecordedPicture both = recorded(with_lights({shadowed(sun)}), "+ambient_occlusion");
+  EXPECT_EQ(both.effect_steps[1], 7u);
+  EXPECT_EQ(both.effect_steps[4], 7u);
+  const RecordedPicture shadows = recorded(with_lights({shadowed(sun)}));
+  EXPECT_LE(both.device_bytes - shadows.device_bytes, 1024u) << "both take the same queue";
+  file["light"] = {{"ambient", {0, 0, 0}}, {"radiance", {1, 1, 1}}};
+  const Scene dark = read_scene(file);
+  EXPECT_EQ(caller(dark, Effect::ambient_occlusion), "") << "there is nothing to keep off";
+  EXPECT_EQ(kernels_of(recorded(dark, "+ambient_occlusion")), kernels_of(recorded(dark)));
+}
+
 TEST(Effects, ViewsThatShowNoColoursHaveNone) {
   FrameOptions options{.build = BuildOptions{}, .trace = {}};
   options.trace.width = 40;
@@ -252,6 +286,9 @@ TEST(Effects, ShadowsNeedATreeOfOneLevel) {
   EXPECT_THROW(plan_frame(layout, scene_arrays(with_lights({shadowed(sun)})), options),
                std::invalid_argument);
   EXPECT_NO_THROW(plan_frame(layout, scene_arrays(with_lights({sun, lamp})), options));
+  Scene occluded = with_light();
+  occluded.occlusion = AmbientOcclusion{};
+  EXPECT_THROW(plan_frame(layout, scene_arrays(occluded), options), std::invalid_argument);
 }
 
 // --- Scene files.

@@ -16,7 +16,7 @@ TEST(SceneFiles, EveryErrorNamesItsPlaceAndWhatWasExpected) {
   };
   const std::vector<Fault> faults = {
       {"/objects", nullptr, "s.json: key \"objects\" is missing"},
-      {"/objekts", 1, "s.json: /objekts: unknown key, expected $schema, camera"},
+      {"/objekts", 1, "s.json: /objekts: unknown key, expected $schema, ambient_occlusion, camera"},
       {"/objects/0/positon", 1,
        "s.json: /objects/0/positon: unknown key, expected deform, keyframes, material"},
       {"/objects/0", 5, "s.json: /objects/0: 5, expected an object"},
@@ -115,6 +115,13 @@ TEST(SceneFiles, EveryErrorNamesItsPlaceAndWhatWasExpected) {
       {"/camera",
        {{"position", {0, 0, 1}}, {"target", {0, 0, 0}}, {"fov", 1e-60}},
        "s.json: /camera/fov: 1e-60, expected a number from 0.01 to 179"},
+      {"/ambient_occlusion",
+       {{"distance", 0}},
+       "s.json: /ambient_occlusion/distance: 0, expected a number from 1e-30 to 1e+30"},
+      {"/ambient_occlusion", true, "s.json: /ambient_occlusion: true, expected an object"},
+      {"/ambient_occlusion",
+       {{"radius", 1}},
+       "s.json: /ambient_occlusion/radius: unknown key, expected distance"},
       {"/camera",
        {{"position", {0, 0, 1}}, {"target", {0, 0, 0}}, {"aperture", -1}},
        "s.json: /camera/aperture: -1, expected a number from 0 to 1e+30"},

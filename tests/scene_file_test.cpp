@@ -223,6 +223,7 @@ TEST(SceneFiles, TheLensIsOfTheCameraAndFollowsTheScene) {
   EXPECT_EQ(read_scene(file).lens.aperture, 0);
   file["camera"]["aperture"] = 0x1p-42;
   file["camera"]["focus"] = 0x1p-39;
+  file["ambient_occlusion"] = {{"distance", 0x1p-41}};
   file["up"] = "z";
   Scene scene = read_scene(file);
   EXPECT_EQ(scene.lens.aperture, 0x1p-42f);
@@ -230,6 +231,7 @@ TEST(SceneFiles, TheLensIsOfTheCameraAndFollowsTheScene) {
   bring_into_range(scene);
   EXPECT_EQ(scene.lens.aperture, std::ldexp(0x1p-42f, scene.scale_exponent));
   EXPECT_EQ(scene.lens.focus, std::ldexp(0x1p-39f, scene.scale_exponent));
+  EXPECT_EQ(scene.occlusion.value().distance, std::ldexp(0x1p-41f, scene.scale_exponent));
   set_lens(scene, {.aperture = 0x1p-41, .focus = {}});
   EXPECT_EQ(scene.lens.aperture, std::ldexp(0x1p-41f, scene.scale_exponent));
   EXPECT_EQ(scene.lens.origin, "--aperture");

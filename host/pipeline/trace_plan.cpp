@@ -92,7 +92,7 @@ ShowSlots plan_show(Layout& layout, const TreeSlots& tree, uint view) {
 float ToneMapping::exposure() const { return static_cast<float>(std::exp2(stops)); }
 
 bool keeps_radiance(const TraceOptions& options) {
-  return options.samples > 1 || options.show != SHOW_COLOR || options.lights.lights > 0 ||
+  return options.samples > 1 || options.show != SHOW_COLOR || options.lights.any() ||
          options.textures.textures > 0 || options.lens || options.tone.changes() ||
          keeps_whole_radiance(options);
 }

@@ -68,6 +68,7 @@ void bring_into_range(Scene& scene) {
   }
   scene.lens.aperture = scale(scene.lens.aperture);
   scene.lens.focus = scale(scene.lens.focus);
+  if (scene.occlusion) scene.occlusion->distance = scale(scene.occlusion->distance);
   for (Light& light : scene.more_lights) {
     if (!light.is_point) continue;
     scale_point(light.place);

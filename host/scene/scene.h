@@ -75,6 +75,13 @@ struct Lens {
   std::string origin;     // what the aperture is of, such as "/camera/aperture"
 };
 
+// Things that are near keep ambient light off.
+struct AmbientOcclusion {
+  float distance = 0.0f;  // how near, in units of the scene; 0: OCCLUSION_SHARE of the scene's diagonal
+};
+
+inline constexpr double OCCLUSION_SHARE = 0.05;
+
 // Of a corner without texture coordinates, or without a normal.
 inline constexpr std::uint32_t NO_ATTRIBUTE = ~0u;
 
@@ -134,9 +141,10 @@ struct Scene {
   // Of the faces of an OBJ or PLY file, before they are cut into triangles (FaceDigest); 0 of others.
   std::uint64_t face_digest = 0;
   DirectionalLight light;
-  std::string light_origin;        // what the file calls it; empty for the default one
-  std::vector<Light> more_lights;  // at most MAX_LIGHTS - 1
-  glm::vec3 ambient_light{0.35f};  // linear RGB, multiplies Material::diffuse
+  std::string light_origin;                   // what the file calls it; empty for the default one
+  std::vector<Light> more_lights;             // at most MAX_LIGHTS - 1
+  glm::vec3 ambient_light{0.35f};             // linear RGB, multiplies Material::diffuse
+  std::optional<AmbientOcclusion> occlusion;  // none: it reaches everything
   // Null: nothing moves but a swarm. With instances it has no vertices: these are in InstancedMesh::motion.
   std::shared_ptr<const Motion> motion;
   std::vector<std::string> warnings;  // one line each, what was odd about the input but not fatal

@@ -246,6 +246,8 @@ Scene SceneFileReader::read() {
   scene.warnings.insert(scene.warnings.begin(), warnings_.begin(), warnings_.end());
   if (scene.indices.empty()) scene.warnings.push_back(name_ + ": no triangles");
   read_scene_lights(file_, name_, scene);
+  if (file_.contains("ambient_occlusion"))
+    scene.occlusion = AmbientOcclusion{file_["ambient_occlusion"].value("distance", 0.0f)};
   if (file_.contains("camera")) scene.lens = read_scene_lens(file_["camera"]);
   stand_up_whole(scene, file_.value("up", "y"));
   return scene;

@@ -83,6 +83,7 @@ struct Film {
 
 // Dimensions of lib/sampler.glsl, each one use in a picture.
 const uint SAMPLE_LENS = 0x10000u;
+const uint SAMPLE_OCCLUSION = 0x10001u;
 
 struct SurfaceMaterial {
   vec3 ambient;  // emission and ambient light, already multiplied

@@ -59,6 +59,7 @@ Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
     scene.more_lights.push_back({.is_point = true, .place = {1, 3, 2}, .shadows = true, .origin = ""});
   }
   if (frame.refines) scene.lens.aperture = 0.1f;
+  if (frame.lights) scene.occlusion = AmbientOcclusion{2};
   SceneArrays arrays = scene_arrays(scene, effects_of(scene));
   arrays.lighting = {};  // padding and all
   if (!frame.lights) arrays.lighting.light_direction = {0.6f, 0.8f, 0};
