@@ -1,4 +1,4 @@
-// In:  hits and the ambient light. Out: which hits need an occlusion ray, see OcclusionMarksArgs; exact on every device.
+// In:  hits and the ambient light. Out: which hits need an occlusion ray, see OcclusionMarksArgs; exact everywhere.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/occlusion.h"
