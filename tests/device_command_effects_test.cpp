@@ -75,13 +75,14 @@ TEST_F(CommandEffects, BothTracersAndAllTreesSeeTheSameShadows) {
 TEST_F(CommandEffects, ExplainNamesWhatCalledForEach) {
   const Outcome outcome = run("render scene.json -o out.png --size 16x16 --explain --effects=-lights");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("lights   off  turned off by --effects; called for by /lights/1, a point\n"),
-            std::string::npos)
+  EXPECT_NE(
+      outcome.out.find("lights            off  turned off by --effects; called for by /lights/1, a point\n"),
+      std::string::npos)
       << outcome.out;
-  EXPECT_NE(outcome.out.find("shadows  on   called for by /lights/0, which casts shadows\n"),
+  EXPECT_NE(outcome.out.find("shadows           on   called for by /lights/0, which casts shadows\n"),
             std::string::npos);
   const Outcome plain = run("render one.obj -o out.png --size 16x16 --explain");
-  EXPECT_NE(plain.out.find("shadows  off  nothing calls for it\n"), std::string::npos) << plain.out;
+  EXPECT_NE(plain.out.find("shadows           off  nothing calls for it\n"), std::string::npos) << plain.out;
   const json explained = report_of("render scene.json -o out.png --explain")["explained"];
   EXPECT_EQ(explained[1]["name"], "shadows");
   EXPECT_EQ(explained[1]["on"], true);
@@ -90,7 +91,7 @@ TEST_F(CommandEffects, ExplainNamesWhatCalledForEach) {
 
 TEST_F(CommandEffects, TheTableHasTheCostOfWhatIsOnAndZeroesForTheRest) {
   const json rich = report_of("effects scene.json")["effects"];
-  ASSERT_EQ(rich.size(), 3u);
+  ASSERT_EQ(rich.size(), 5u);
   EXPECT_EQ(rich[0]["name"], "lights");
   EXPECT_GT(rich[0]["rays"], 0) << "one of the points casts shadows";
   const json& shadows = rich[1];
@@ -117,7 +118,7 @@ TEST_F(CommandEffects, ATextureThatIsMissingIsNamedAndACheckerIsSeen) {
   write_wall();
   const Outcome outcome = run("render wall.obj -o out.png --size 32x32 --explain");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("textures on   called for by material 'wall', which has gone.png\n"),
+  EXPECT_NE(outcome.out.find("textures          on   called for by material 'wall', which has gone.png\n"),
             std::string::npos)
       << outcome.out;
   const Outcome without = run("render wall.obj -o out.png --size 32x32 --effects=-textures");
@@ -144,6 +145,61 @@ TEST_F(CommandEffects, EveryCommandWarnsOnceOfATextureThatIsMissing) {
               "warning: gone.png: no such file, a checker takes its place as map_Kd of material 'wall'\n")
         << command;
   }
+}
+
+TEST_F(CommandEffects, TheLensIsThatOfTheSceneOrOfTheCommandLine) {
+  const std::string render = "render one.obj -o out.png --camera 0,0,5,0,0,0 --spp 4";
+  const json sharp = report_of(render), blurred = report_of(render + " --aperture 0.5 --focus 2");
+  EXPECT_EQ(blurred["effects"].back(), "depth_of_field");
+  EXPECT_NE(blurred["image_hash"], sharp["image_hash"]);
+  EXPECT_EQ(blurred["image_hash"],
+            report_of(render + " --aperture 0.5 --focus 2 --tree binary")["image_hash"]);
+  EXPECT_EQ(report_of(render + " --aperture 0")["image_hash"], sharp["image_hash"]);
+  EXPECT_EQ(report_of(render + " --aperture 0.5 --effects=-depth_of_field")["image_hash"],
+            sharp["image_hash"]);
+  write("lens.json", R"({ "meshes": { "two": { "file": "two.obj" } }, "objects": [ { "mesh": "two" } ],
+      "camera": { "position": [3, 8, 6], "target": [0, 0, 0], "aperture": 0.5 } })");
+  const json scene = report_of("render lens.json -o out.png --spp 2");
+  EXPECT_EQ(report_of("animate lens.json --frames 1 --spp 2")["frame_hashes"][0], scene["image_hash"]);
+  EXPECT_TRUE(report_of("lockstep lens.json --spp 2")["equal"]);
+  const json cost = report_of("effects lens.json --spp 2")["effects"][3];
+  EXPECT_EQ(cost["name"], "depth_of_field");
+  EXPECT_EQ(cost["called_by"], "/camera/aperture");
+  EXPECT_EQ(cost["kernels"], json::array());
+  EXPECT_EQ(cost["rays"], 0);
+  EXPECT_GT(report_of("render instances:20 -o out.png --aperture 0.5")["instances"], 0);
+  const Outcome unused = run(render + " --size 16x16 --focus 2");
+  EXPECT_NE(unused.err.find("warning: --focus means nothing without an aperture\n"), std::string::npos);
+  fs::remove("out.png");
+  expect_refused(render + " --aperture=-1", 2, "--aperture: '-1' is no length from 0 to 1e30");
+  expect_refused(render + " --focus 0", 2, "--focus: '0' is no length from 1e-30 to 1e30");
+}
+
+TEST_F(CommandEffects, AmbientOcclusionIsCountedAndCosted) {
+  write("nook.json", R"({ "meshes": { "two": { "file": "two.obj" } }, "objects": [ { "mesh": "two" } ],
+      "camera": { "position": [3, 8, 6], "target": [0, 0, 0] }, "ambient_occlusion": { "distance": 3 } })");
+  const json seen = report_of("render nook.json -o out.png --spp 2");
+  EXPECT_EQ(seen["effects"].back(), "ambient_occlusion");
+  EXPECT_EQ(seen["rays"]["shadow"], 0);
+  EXPECT_GT(seen["rays"]["occlusion"], 64 * 48);
+  const json cpu = report_of("render nook.json -o out.png --spp 2 --tracer cpu");
+  EXPECT_NEAR(cpu["rays"]["occlusion"].get<double>(), seen["rays"]["occlusion"].get<double>(), 4);
+  EXPECT_EQ(cpu["rays"]["shadow"], 0);
+  const json frames = report_of("animate nook.json --frames 1 --spp 2");
+  EXPECT_EQ(frames["frame_hashes"][0], seen["image_hash"]);
+  EXPECT_EQ(frames["rays"]["occlusion"], seen["rays"]["occlusion"]);
+  EXPECT_TRUE(report_of("lockstep nook.json --spp 2")["equal"]);
+  const json cost = report_of("effects nook.json --spp 2")["effects"][4];
+  EXPECT_EQ(cost["name"], "ambient_occlusion");
+  EXPECT_EQ(cost["rays"], seen["rays"]["occlusion"]);
+  EXPECT_GT(cost["bytes"], 64 * 48 * 44);
+  EXPECT_EQ(report_of("render nook.json -o out.png --effects=-ambient_occlusion")["rays"]["occlusion"], 0);
+  EXPECT_GT(report_of("render one.obj -o out.png --effects +ambient_occlusion")["rays"]["occlusion"], 0);
+  fs::remove("out.png");
+  expect_refused("render nook.json -o out.png --builder none", 1,
+                 "--builder none: ambient occlusion is traced through a tree");
+  expect_refused("animate instances:20 --frames 1 --size 16x16 --effects +ambient_occlusion", 1,
+                 "through which no occlusion rays are traced (--effects=-ambient_occlusion goes without)");
 }
 
 TEST_F(CommandEffects, AnimateAndLockstepTakeThem) {

@@ -126,7 +126,9 @@ TEST(Effects, ChangesThatNobodyKnowsAreNamed) {
     }
     return "";
   };
-  const std::string all = " is no + or - and an effect behind it: there are lights, shadows, textures";
+  const std::string all =
+      " is no + or - and an effect behind it: there are lights, shadows, textures, "
+      "depth_of_field, ambient_occlusion";
   EXPECT_EQ(error_of("+fog"), "'+fog'" + all);
   EXPECT_EQ(error_of("shadows"), "'shadows'" + all);
   EXPECT_EQ(error_of("+"), "'+'" + all);
@@ -213,6 +215,60 @@ TEST(Effects, TexturesRecordOneStageMoreAndOpenNoImageWhereTheyAreOff) {
   EXPECT_TRUE(scene_arrays(scene).textures.empty()) << "for trees alone";
 }
 
+TEST(Effects, AnApertureCallsForDepthOfFieldWhichChangesAKernelAndAddsNone) {
+  json file = with_object();
+  file["camera"] = {{"position", {0, 0, 4}}, {"target", {0, 0, 0}}, {"aperture", 0.25}, {"focus", 3}};
+  Scene scene = read_scene(file);
+  EXPECT_EQ(caller(scene, Effect::depth_of_field), "/camera/aperture");
+  EXPECT_FALSE(effects_of(scene).needs_one_level());
+  const RecordedPicture blurred = recorded(scene, "", 2), sharp = recorded(scene, "-depth_of_field", 2);
+  EXPECT_EQ(kernels_of(blurred), kernels_of(sharp));
+  EXPECT_EQ(blurred.device_bytes, sharp.device_bytes);
+  EXPECT_EQ(blurred.effect_steps[3], 2u);
+  EXPECT_EQ(sharp.effect_steps[3], 0u);
+  const RecordedPicture wide = recorded(scene, "", 1, Walk::wide_packets);
+  EXPECT_EQ(kernels_of(wide), "camera_rays*1 trace_wide*1 shade*1 resolve*1");
+  EXPECT_EQ(kernels_of(recorded(scene, "-depth_of_field", 1, Walk::wide_packets)), "trace_pixels*1");
+  scene.lens.aperture = 0;
+  EXPECT_EQ(caller(scene, Effect::depth_of_field), "");
+  EXPECT_EQ(kernels_of(recorded(scene, "+depth_of_field", 1, Walk::wide_packets)), "trace_pixels*1")
+      << "without an aperture there is nothing to do";
+}
+
+TEST(Effects, TheSceneFileCallsForAmbientOcclusion) {
+  json file = with_object();
+  file["ambient_occlusion"] = {{"distance", 0.5}};
+  const Scene scene = read_scene(file);
+  EXPECT_EQ(caller(scene, Effect::ambient_occlusion), "/ambient_occlusion");
+  EXPECT_TRUE(effects_of(scene).needs_one_level());
+  EXPECT_EQ(scene_arrays(scene).light_counts, (LightCounts{1, 0, false, true}));
+  const RecordedPicture on = recorded(scene, "", 2), off = recorded(scene, "-ambient_occlusion", 2);
+  EXPECT_EQ(kernels_of(on),
+            "camera_rays*2 trace_closest*2 shade*2 shade_lights*2 occlusion_marks*2 scan_tile_sums*2 "
+            "prefix_scan*4 occlusion_rays*2 trace_any*2 shade_ambient*2 resolve*1");
+  EXPECT_EQ(on.effect_steps[0], 0u);
+  EXPECT_EQ(on.effect_steps[1], 0u);
+  EXPECT_EQ(on.effect_steps[4], 2u * 8) << "the plain light is one of a list";
+  EXPECT_EQ(kernels_of(off), "camera_rays*2 trace_closest*2 shade*2 resolve*1");
+  EXPECT_EQ(off.effect_steps[4], 0u);
+  for (const char* slot : {"ambient_light", "occlusion_counters", "shadow_rays"}) {
+    EXPECT_TRUE(has_slot(on, slot)) << slot;
+    EXPECT_FALSE(has_slot(off, slot)) << slot;
+  }
+  EXPECT_FALSE(has_slot(on, "shadow_counters"));
+  const RecordedPicture turned_on = recorded(with_light(), "+ambient_occlusion");
+  EXPECT_EQ(turned_on.effect_steps[4], 8u);
+  const RecordedPicture both = recorded(with_lights({shadowed(sun)}), "+ambient_occlusion");
+  EXPECT_EQ(both.effect_steps[1], 7u);
+  EXPECT_EQ(both.effect_steps[4], 7u);
+  const RecordedPicture shadows = recorded(with_lights({shadowed(sun)}));
+  EXPECT_LE(both.device_bytes - shadows.device_bytes, 1024u) << "both take the same queue";
+  file["light"] = {{"ambient", {0, 0, 0}}, {"radiance", {1, 1, 1}}};
+  const Scene dark = read_scene(file);
+  EXPECT_EQ(caller(dark, Effect::ambient_occlusion), "") << "there is nothing to keep off";
+  EXPECT_EQ(kernels_of(recorded(dark, "+ambient_occlusion")), kernels_of(recorded(dark)));
+}
+
 TEST(Effects, ViewsThatShowNoColoursHaveNone) {
   FrameOptions options{.build = BuildOptions{}, .trace = {}};
   options.trace.width = 40;
@@ -230,6 +286,9 @@ TEST(Effects, ShadowsNeedATreeOfOneLevel) {
   EXPECT_THROW(plan_frame(layout, scene_arrays(with_lights({shadowed(sun)})), options),
                std::invalid_argument);
   EXPECT_NO_THROW(plan_frame(layout, scene_arrays(with_lights({sun, lamp})), options));
+  Scene occluded = with_light();
+  occluded.occlusion = AmbientOcclusion{};
+  EXPECT_THROW(plan_frame(layout, scene_arrays(occluded), options), std::invalid_argument);
 }
 
 // --- Scene files.

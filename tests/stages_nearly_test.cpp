@@ -183,7 +183,7 @@ TEST(Nearly, OnlyStagesThatDivideOrTakeRootsAreNearlyEqual) {
     const bool may = traces || name == "camera_rays" || name == "bounce_rays" || name == "shade" ||
                      name == "resolve" || name == "shade_pixels" || name == "show" || name == "shadow_rays" ||
                      name == "noise_sum" || name == "noise_marks" || name == "shade_lights" ||
-                     name == "texture_hits";
+                     name == "texture_hits" || name == "occlusion_rays";
     EXPECT_EQ(!stage->nearly.empty(), may) << name;
   }
 }

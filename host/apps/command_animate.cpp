@@ -86,6 +86,7 @@ class AnimateCommand : public Command {
     app.add_flag("--kernels", kernels_, "print the time of every kernel of one frame");
     add_picture(app, picture_, scene_.up);
     add_effects(app, scene_.effects);
+    add_lens(app, scene_);
     add_tone(app, picture_.trace.tone);
     add_tree(app, device_.choices.walk);
     add_trace_events(app, files.trace_events);

@@ -35,6 +35,7 @@ class RenderCommand : public Command {
     app.add_flag("--kernels", kernels_, "print the time of every kernel; takes the frame once more");
     add_picture(app, picture_, scene_.up);
     add_effects(app, scene_.effects);
+    add_lens(app, scene_);
     add_tone(app, picture_.trace.tone);
     app.add_flag("--explain", explain_, "say of each effect whether it is on, and what called for it");
     add_refine(app, refine_);
@@ -134,11 +135,15 @@ class RenderCommand : public Command {
 
   // There is none to trace them through.
   void check_shadows(const EffectSet& effects) const {
-    if (effects.has(Effect::shadows) && show_.show == Show::color && traces_on_device() &&
-        builder_.name == "none")
+    if (builder_.name != "none" || show_.show != Show::color || !traces_on_device()) return;
+    if (effects.has(Effect::shadows))
       throw InputError(
           "--builder none: shadows are traced through a tree, which takes another builder "
           "(--effects=-shadows goes without)");
+    if (effects.has(Effect::ambient_occlusion))
+      throw InputError(
+          "--builder none: ambient occlusion is traced through a tree, which takes another builder "
+          "(--effects=-ambient_occlusion goes without)");
   }
 
   // Otherwise instances are flattened: only trees of the device have two levels.

@@ -61,6 +61,10 @@ Scene open_for_effects(const SceneOptions& options, const BuilderChoice& builder
       throw InputError("scene '" + scene.name +
                        "' has instances that move, through which no shadow rays are traced "
                        "(--effects=-shadows goes without)");
+    if (effects.has(Effect::ambient_occlusion) && moves && !scene.motion && !may_stand_still)
+      throw InputError("scene '" + scene.name +
+                       "' has instances that move, through which no occlusion rays are traced "
+                       "(--effects=-ambient_occlusion goes without)");
   }
   print_warnings(scene.warnings);
   return scene;

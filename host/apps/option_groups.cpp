@@ -209,6 +209,21 @@ void add_effects(CLI::App& app, EffectChanges& effects) {
       ->type_name("+E,-E,...");
 }
 
+void add_lens(CLI::App& app, SceneOptions& scene) {
+  const auto add = [&](const char* name, std::optional<double>& value, double least, const char* help) {
+    const auto set = [&value](const std::string& given) { value = number_of(given); };
+    app.add_option_function<std::string>(name, set, help)
+        ->type_name("LENGTH")
+        ->check([least](const std::string& text) -> std::string {
+          const std::optional<double> number = number_of(text);
+          if (number && *number >= least && *number <= 1e30) return "";
+          return "'" + text + "' is no length from " + (least > 0 ? "1e-30" : "0") + " to 1e30";
+        });
+  };
+  add("--aperture", scene.aperture, 0, "diameter of the camera's lens, in the file's unit; 0: a pinhole");
+  add("--focus", scene.focus, 1e-30, "depth at which a lens is sharp; default: what the camera looks at");
+}
+
 void add_show(CLI::App& app, ShowOptions& show) {
   const auto set = [&show](const std::string& given) {
     show.show = static_cast<Show>(std::ranges::find(SHOW_NAMES, given) - SHOW_NAMES);

@@ -47,6 +47,7 @@ struct AnimatedFrame {
   std::uint32_t active_count;
   std::uint64_t rays, hits, steps;  // of the camera's rays
   std::uint64_t shadow_rays, shadow_hits;
+  std::uint64_t occlusion_rays;
   std::uint64_t hash;  // of the picture
 };
 

@@ -41,7 +41,8 @@ double mean_samples(const FrameReport& report, const FrameRuns& frame) {
 }
 
 double mrays_per_s(const FrameReport& report) {
-  return static_cast<double>(report.rays + report.shadow.rays) / report.trace_ms / 1000;
+  return static_cast<double>(report.rays + report.shadow.rays + report.occlusion.rays) / report.trace_ms /
+         1000;
 }
 
 }  // namespace
@@ -66,7 +67,7 @@ Json to_json(const FrameReport& report, const Scene& scene, const FrameRuns& fra
                  {"shadow", report.shadow.rays},
                  {"reflection", 0},
                  {"refraction", 0},
-                 {"occlusion", 0},
+                 {"occlusion", report.occlusion.rays},
                  {"diffuse", 0}}},
                {"mrays_per_s", mrays_per_s(report)},
                {"effects", names_of_effects(scene, effects_of(scene, frame.effects))},
@@ -116,6 +117,10 @@ std::string text_of(const FrameReport& report, const Scene& scene, const FrameRu
     text += format("  shadows  %9llu rays, %llu of them blocked\n",
                    static_cast<unsigned long long>(report.shadow.rays),
                    static_cast<unsigned long long>(report.shadow.hits));
+  if (report.occlusion.rays > 0)
+    text += format("  ambient  %9llu rays, %llu of them blocked\n",
+                   static_cast<unsigned long long>(report.occlusion.rays),
+                   static_cast<unsigned long long>(report.occlusion.hits));
   text += text_of(report.shown, scene);
   text += format("  write    %9.1f ms\n", around.write_ms);
   if (!report.kernels.rows.empty() && !build.kernels.rows.empty()) text += text_of(build.kernels);

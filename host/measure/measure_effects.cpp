@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <initializer_list>
 #include <numeric>
 
 #include "measure/effects_report.h"
@@ -12,17 +13,31 @@ namespace {
 
 using Kernel = RecordedPicture::Kernel;
 
-// Whether a step is there for this effect alone.
-bool belongs_to(const Step& step, Effect effect) {
+// Of which effect stages are that several take.
+struct Sharing {
+  Effect queue = Effect::shadows;        // whose rays the queue has then
+  Effect plain_lights = Effect::lights;  // what shades those without shadows
+};
+
+// Whether a step is there, or has its kernel, for this effect alone.
+bool belongs_to(const Step& step, Effect effect, const Sharing& sharing) {
+  if (effect == Effect::depth_of_field) {
+    const CameraRaysArgs* const rays = args_of(step, stages::camera_rays);
+    return rays && rays->has_lens != 0;
+  }
   if (effect == Effect::textures) return stage_of(step) == &stages::texture_hits;
   const ShadeLightsArgs* const shading = args_of(step, stages::shade_lights);
-  if (shading) return (shading->marks.value != 0) == (effect == Effect::shadows);
-  if (effect != Effect::shadows) return false;
+  if (shading) return effect == (shading->marks.value != 0 ? Effect::shadows : sharing.plain_lights);
   const StageDeclaration* const stage = stage_of(step);
-  const StageDeclaration* const own[] = {&stages::shadow_marks,   &stages::shadow_rays,
-                                         &stages::scan_tile_sums, &stages::prefix_scan,
-                                         &stages::trace_any,      &stages::trace_wide_any};
-  return std::ranges::find(own, stage) != std::end(own);
+  const auto is_one_of = [&](std::initializer_list<const StageDeclaration*> own) {
+    return std::ranges::find(own, stage) != own.end();
+  };
+  if (effect == Effect::shadows && is_one_of({&stages::shadow_marks, &stages::shadow_rays})) return true;
+  if (effect == Effect::ambient_occlusion &&
+      is_one_of({&stages::occlusion_marks, &stages::occlusion_rays, &stages::shade_ambient}))
+    return true;
+  return effect == sharing.queue && is_one_of({&stages::scan_tile_sums, &stages::prefix_scan,
+                                               &stages::trace_any, &stages::trace_wide_any});
 }
 
 void count_kernel(std::vector<Kernel>& kernels, const char* name) {
@@ -53,7 +68,7 @@ double ms_of(const KernelTable& table, const std::string& name) {
   return row == table.rows.end() ? 0 : row->ms;
 }
 
-// By the kernels of which one picture has more than the other.
+// By the kernels of which one picture has more than the other, and the one that rays through a lens are of.
 std::optional<double> ms_between(const EffectCost& cost, const KernelTable& with,
                                  const KernelTable& without) {
   if (with.untimed || without.untimed) return std::nullopt;
@@ -61,6 +76,8 @@ std::optional<double> ms_between(const EffectCost& cost, const KernelTable& with
   for (const std::vector<Kernel>* const kernels : {&cost.kernels, &cost.instead_of}) {
     for (const Kernel& kernel : *kernels) ms += ms_of(with, kernel.name) - ms_of(without, kernel.name);
   }
+  if (cost.effect == Effect::depth_of_field)
+    ms += ms_of(with, stages::camera_rays.name) - ms_of(without, stages::camera_rays.name);
   return ms;
 }
 
@@ -78,10 +95,17 @@ RecordedPicture recorded_picture(const SceneArrays& arrays, const FrameOptions& 
   RecordedPicture recorded;
   recorded.device_bytes = device_bytes(layout);
   for (const SlotListing& slot : layout.slots()) recorded.slots.push_back(slot.name);
+  Sharing sharing;
+  // The one light that else is part of the materials.
+  const LightCounts& lights = plan.trace.options.lights;
+  if (lights.occlusion && lights.lights == 1 && !lights.points)
+    sharing.plain_lights = Effect::ambient_occlusion;
   for (const Step& step : chain.steps()) {
+    if (stage_of(step) == &stages::shadow_marks) sharing.queue = Effect::shadows;
+    if (stage_of(step) == &stages::occlusion_marks) sharing.queue = Effect::ambient_occlusion;
     if (stage_of(step)) count_kernel(recorded.kernels, stage_of(step)->name);
     for (std::size_t i = 0; i < effect_count; ++i)
-      recorded.effect_steps[i] += belongs_to(step, static_cast<Effect>(i));
+      recorded.effect_steps[i] += belongs_to(step, static_cast<Effect>(i), sharing);
   }
   return recorded;
 }
@@ -102,7 +126,9 @@ EffectsReport measure_effects(CheckedDevice& device, const Scene& scene, const S
   for (std::size_t i = 0; i < effect_count; ++i) {
     const Effect effect = static_cast<Effect>(i);
     EffectCost cost{.effect = effect, .state = effects.of(effect), .own_steps = all.effect_steps[i]};
-    if (effect == Effect::shadows) cost.rays = with.shadow.rays;  // counted, where it is off, too
+    // Counted, where they are off, too.
+    if (effect == Effect::shadows) cost.rays = with.shadow.rays;
+    if (effect == Effect::ambient_occlusion) cost.rays = with.occlusion.rays;
     if (cost.state.on) {
       FrameRuns other = frame;
       other.effects = frame.effects.but(effect, false);
@@ -112,7 +138,9 @@ EffectsReport measure_effects(CheckedDevice& device, const Scene& scene, const S
       cost.instead_of = less(rest.kernels, all.kernels);
       cost.bytes = static_cast<std::int64_t>(all.device_bytes) - static_cast<std::int64_t>(rest.device_bytes);
       const FrameReport without = measure_frame(device, scene, other_arrays, other);
-      cost.rays = with.shadow.rays - without.shadow.rays;
+      // A lens sends rays elsewhere and adds none.
+      if (effect == Effect::lights || effect == Effect::shadows)
+        cost.rays = with.shadow.rays - without.shadow.rays;
       cost.ms = ms_between(cost, with.kernels, without.kernels);
     }
     report.costs.push_back(std::move(cost));

@@ -265,6 +265,7 @@ FrameReport measure_frame(CheckedDevice& device, const Scene& scene, const Scene
   report.hits = counts.hits;
   report.steps = counts.steps;
   report.shadow = {counts.shadow.rays, counts.shadow.hits, counts.shadow.steps};
+  report.occlusion = {counts.occlusion.rays, counts.occlusion.hits, counts.occlusion.steps};
   read_picture(executor, plan, film, report);
   report.build.device_bytes = device_bytes(layout);
   if (plan.build) describe_device_build(device, executor, *plan.build, report.build);

@@ -34,15 +34,15 @@ void trace_closest_on_host(const TraceClosestArgs& args, const Bvh& bvh, std::sp
   report.hits += count_hits(hits);
 }
 
-// Of shadow rays: whether there is a closest hit.
+// Of shadow or occlusion rays: whether there is a closest hit.
 void trace_any_on_host(const TraceAnyArgs& args, const Bvh& bvh, std::span<const Triangle> triangles,
-                       FrameReport& report) {
+                       TraceCounts& counts) {
   const std::span<const Ray> rays(&args.rays[0], args.count_at[0]);
   std::vector<Hit> hits(rays.size());
   trace_all(bvh.nodes, triangles, rays, hits);
   for (std::size_t i = 0; i < hits.size(); ++i) args.any_hits[i] = hits[i].triangle != NO_TRIANGLE;
-  report.shadow.rays += rays.size();
-  report.shadow.hits += count_hits(hits);
+  counts.rays += rays.size();
+  counts.hits += count_hits(hits);
 }
 
 // The device's chain, with the independent tracer in the place of its tracer.
@@ -59,10 +59,15 @@ struct HostTrace {
       if (const TraceClosestArgs* const closest = args_of(step, stages::trace_closest))
         trace_closest_on_host(*closest, bvh, triangles, report);
       else if (const TraceAnyArgs* const any = args_of(step, stages::trace_any))
-        trace_any_on_host(*any, bvh, triangles, report);
+        trace_any_on_host(*any, bvh, triangles, is_occlusion(*any) ? report.occlusion : report.shadow);
       else
         executor.run(step);
     }
+  }
+
+  bool is_occlusion(const TraceAnyArgs& args) const {
+    const Slot<TraceCounters>& counters = plan.trace.lights.occlusion_counters;
+    return counters.count > 0 && executor.chain().at(counters).value == args.counters.value;
   }
 
   // In pieces, so that Ctrl-C is heard soon. Returns the seconds they took, and calls `after` with the work

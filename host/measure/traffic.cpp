@@ -13,9 +13,13 @@ RunCounts counts_of_trace(const TraceCounters& counters) {
 
 RunCounts counts_of_picture(const GpuExecutor& executor, const TracePlan& plan) {
   RunCounts counts = counts_of_trace(executor.read(plan.counters)[0]);
-  if (plan.lights.counters.count == 0) return counts;
-  const TraceCounts shadow = counts_of(executor.read(plan.lights.counters)[0]);
-  counts.shadow = {counts.rays * plan.options.lights.shadows, shadow.rays, shadow.hits, shadow.steps};
+  const auto secondary = [&](const Slot<TraceCounters>& slot, std::uint64_t lights) {
+    if (slot.count == 0) return RunCounts::Secondary{};
+    const TraceCounts left = counts_of(executor.read(slot)[0]);
+    return RunCounts::Secondary{counts.rays * lights, left.rays, left.hits, left.steps};
+  };
+  counts.shadow = secondary(plan.lights.counters, plan.options.lights.shadows);
+  counts.occlusion = secondary(plan.lights.occlusion_counters, 1);
   return counts;
 }
 

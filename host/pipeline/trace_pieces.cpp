@@ -75,8 +75,8 @@ void TracePieces::open_range(Chain& chain, std::uint64_t work) {
   chain.run(stages::camera_rays,
             {chain.at(plan_.film), chain.at(plan_.rays, range_.first), chain.at(plan_.hits, range_.first),
              address_or_null(chain, plan_.traced_pixels, band_first_ + range_.first),
-             band_first_ + range_.first, range_.count, sample_, 0},
-            groups_of(range_.count, CAMERA_RAYS_GROUP), {plan_.traced_pixels.count > 0});
+             band_first_ + range_.first, range_.count, sample_, plan_.options.lens},
+            groups_of(range_.count, CAMERA_RAYS_GROUP), {plan_.traced_pixels.count > 0, plan_.options.lens});
 }
 
 void TracePieces::append_traced_pixels(Chain& chain) const {
@@ -137,16 +137,17 @@ void TracePieces::append_shade(Chain& chain, Vec3Buffer radiance) const {
       stages::shade,
       {triangles, material_index, materials, chain.at(plan_.lighting), chain.at(plan_.rays, range_.first),
        chain.at(plan_.hits, range_.first), radiance, range_.count, summed_samples()},
-      groups_of(range_.count, SHADE_GROUP),
-      {plan_.options.directional_light && plan_.options.lights.lights == 0});
+      groups_of(range_.count, SHADE_GROUP), {plan_.options.directional_light && !plan_.options.lights.any()});
 }
 
 void TracePieces::append_all_lights(Chain& chain, Vec3Buffer radiance) const {
-  if (plan_.options.lights.lights == 0) return;
+  if (!plan_.options.lights.any()) return;
   const auto [triangles, material_index, materials] = textured_surfaces(chain);
   append_lights(chain, tree_, plan_.lights,
                 {triangles, material_index, materials, chain.at(plan_.rays, range_.first),
-                 chain.at(plan_.hits, range_.first), radiance, range_.count},
+                 chain.at(plan_.hits, range_.first), radiance, range_.count,
+                 address_or_null(chain, plan_.traced_pixels, band_first_ + range_.first),
+                 band_first_ + range_.first, sample_},
                 plan_.options);
 }
 
@@ -210,6 +211,7 @@ std::uint64_t TracePieces::append(Chain& chain, std::uint64_t work) {
   if (!cleared_) chain.clear(plan_.counters);
   if (!cleared_) chain.clear(plan_.show.range);
   if (!cleared_) chain.clear(plan_.lights.counters);
+  if (!cleared_) chain.clear(plan_.lights.occlusion_counters);
   cleared_ = true;
   std::uint64_t appended = 0;
   while (!done() && has_room(tree_, plan_.options, appended, work)) {

@@ -39,6 +39,7 @@ struct TraceOptions {
   bool directional_light = true;    // what the scene calls for
   LightCounts lights{};             // of colours
   TextureCounts textures{};         // of colours
+  bool lens = false;                // of colours: rays go through that of the film
   std::uint32_t show = SHOW_COLOR;  // SHOW_; brute force has no steps
   bool keep_hits = false;           // the rays of the last sample and their hits are asked for
   ToneMapping tone{};               // of colours
@@ -55,8 +56,8 @@ struct TraceOptions {
 // order of visits does not show.
 bool can_trace_wide(const TraceOptions& options);
 
-// Whether samples or lights are added up before they are pixels, what they see is not colour, tones are
-// mapped, or radiance is asked for.
+// Whether samples or lights are added up before they are pixels, what they see is not colour, rays are not
+// those of pixels' centres, tones are mapped, or radiance is asked for.
 bool keeps_radiance(const TraceOptions& options);
 
 // Whether it is kept of the whole picture, not of a band.

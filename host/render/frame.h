@@ -32,8 +32,8 @@ struct FramePlan {
 };
 
 // The lights and textures are those of the scene, whatever the options say. Throws LayoutError if a slot does
-// not fit a block, and std::invalid_argument for instances with a tree of the host, a wide one, shadows or
-// textures, and for shadows without a tree.
+// not fit a block, and std::invalid_argument for instances with a tree of the host, a wide one, shadows,
+// occlusion or textures, and for shadows or occlusion without a tree.
 FramePlan plan_frame(Layout& layout, const SceneArrays& scene, const FrameOptions& options);
 
 // The parts of a frame: nothing where there is nothing to do.
@@ -70,6 +70,8 @@ void upload_frame(Executor& executor, const TreeSlots& tree, const TracePlan& tr
   executor.upload(trace.srgb_thresholds, std::span<const uint>(thresholds));
   if (trace.lights.sources.count > 0)
     executor.upload(trace.lights.sources, std::span<const LightSource>(scene.lights));
+  if (trace.lights.ambient.count > 0)
+    executor.upload(trace.lights.ambient, std::span<const AmbientLight>(&scene.ambient, 1));
   if (trace.textures.headers.count > 0) upload_textures(executor, trace.textures, scene);
 }
 

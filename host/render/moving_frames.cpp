@@ -59,6 +59,8 @@ FramePlan MovingFrames::plan_all(MovingFrames& frames, const SceneArrays& arrays
           layout.add_mapped<BuildState>("state_left", 1),
           layout.add_mapped<TraceCounters>("counters_left", 1),
           layout.add_mapped<TraceCounters>("shadow_counters_left", plan.trace.lights.counters.count),
+          layout.add_mapped<TraceCounters>("occlusion_counters_left",
+                                           plan.trace.lights.occlusion_counters.count),
           layout.add_mapped<RefitState>("refit_left", 1),
           plan.levels ? plan_instances_left(layout, plan.levels->plan, moving) : InstancesLeft{}}});
   }
@@ -162,6 +164,8 @@ void MovingFrames::append_picture(Chain& chain, const FrameSlots& slots) const {
   append_copy_out(chain, plan_.tree.state, slots.left.state);
   append_copy_out(chain, trace.counters, slots.left.counters);
   if (slots.left.shadow.count > 0) append_copy_out(chain, trace.lights.counters, slots.left.shadow);
+  if (slots.left.occlusion.count > 0)
+    append_copy_out(chain, trace.lights.occlusion_counters, slots.left.occlusion);
   if (has_state()) append_copy_out(chain, refit_.state, slots.left.refit);
   if (plan_.levels) append_instances_left(chain, plan_.levels->plan, instances_, slots.left.instances);
 }
@@ -237,6 +241,7 @@ MovingFrame MovingFrames::outcome(const Recorder::Times& times, const Left& left
   frame.state = *mapped(left.state);
   frame.counts = counts_of(*mapped(left.counters));
   if (left.shadow.count > 0) frame.shadow = counts_of(*mapped(left.shadow));
+  if (left.occlusion.count > 0) frame.occlusion = counts_of(*mapped(left.occlusion));
   frame.image = {mapped(left.image), left.image.count};
   if (options_.tree_cost) frame.sah = sah_cost(*mapped(left.refit), frame.state.active_count);
   return frame;
@@ -270,7 +275,7 @@ MovingFrame MovingFrames::take() {
   const Slot<BuildState>& meshes = left.instances.mesh_states;
   if (meshes.count > 0) check_meshes({mapped(meshes), meshes.count});
   chooser_.note({frame.rebuilt, frame.submits > 1, frame.update_ms + frame.wide_ms, frame.trace_ms,
-                 frame.counts.steps + frame.shadow.steps});
+                 frame.counts.steps + frame.shadow.steps + frame.occlusion.steps});
   return frame;
 }
 

@@ -38,6 +38,7 @@ struct MovingFrame {
   std::uint32_t submits = 1;  // 2: triangles appeared that the tree of a refit has no leaves for
   TraceCounts counts;         // of the camera's rays
   TraceCounts shadow;         // of shadow rays
+  TraceCounts occlusion;      // of occlusion rays
   BuildState state;
   double sah = 0;               // of the tree; 0 unless asked for
   std::span<const uint> image;  // RGBA8; until so many more frames as may be under way have been submitted
@@ -99,7 +100,7 @@ class MovingFrames {
     Slot<uint> image;
     Slot<BuildState> state;
     Slot<TraceCounters> counters;
-    Slot<TraceCounters> shadow;
+    Slot<TraceCounters> shadow, occlusion;
     Slot<RefitState> refit;
     InstancesLeft instances;
   };

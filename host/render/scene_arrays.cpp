@@ -1,8 +1,10 @@
 #include "render/scene_arrays.h"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <limits>
 
 #include "scene/instances.h"
@@ -25,6 +27,16 @@ LightSource light_source(const Light& light) {
           flush_to_zero(light.radiance), std::min(light.distance, farthest)};
 }
 
+AmbientLight ambient_light(const Scene& scene, std::span<const Triangle> triangles) {
+  double distance = scene.occlusion ? scene.occlusion->distance : 0;
+  if (distance == 0) {
+    const Aabb box = box_of(triangles);
+    distance = OCCLUSION_SHARE * glm::distance(glm::dvec3(box.box_min), glm::dvec3(box.box_max));
+  }
+  return {flush_to_zero(scene.ambient_light),
+          static_cast<float>(std::clamp(distance, double{FLT_MIN}, double{FLT_MAX}))};
+}
+
 // The light is part of the materials, or shading goes over a list of lights, which materials only reflect.
 void add_lights(SceneArrays& arrays, const Scene& scene, const EffectSet& effects) {
   for (const Light& light : shaded_lights(scene, effects)) {
@@ -33,10 +45,13 @@ void add_lights(SceneArrays& arrays, const Scene& scene, const EffectSet& effect
     arrays.light_counts.shadows += light.shadows;
     arrays.light_counts.points |= light.is_point;
   }
-  const bool listed = !arrays.lights.empty();
+  const bool occluded = occludes_ambient(scene, effects);
+  if (occluded) arrays.ambient = ambient_light(scene, arrays.triangles);
+  arrays.light_counts.occlusion = occluded;
+  const bool listed = arrays.light_counts.any();
   for (const Material& material : scene.materials) {
     arrays.materials.push_back(
-        {material.emission + material.diffuse * scene.ambient_light,
+        {occluded ? material.emission : material.emission + material.diffuse * scene.ambient_light,
          listed ? flush_to_zero(material.diffuse) : material.diffuse * scene.light.radiance});
   }
   const vec3 direction = listed ? vec3(0) : scene.light.direction;
@@ -51,7 +66,8 @@ void add_textures(SceneArrays& arrays, const Scene& scene) {
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     const Material& material = scene.materials[i];
     arrays.textured_materials.push_back(
-        {material.emission, material.diffuse * scene.ambient_light, arrays.materials[i].diffuse});
+        {material.emission, arrays.light_counts.occlusion ? vec3(0) : material.diffuse * scene.ambient_light,
+         arrays.materials[i].diffuse});
   }
 }
 
@@ -72,6 +88,7 @@ SceneArrays scene_arrays(const Scene& scene, const EffectSet& effects) {
   }
   arrays.material_index = scene.material_index;
   add_lights(arrays, scene, effects);
+  arrays.lens = effects.has(Effect::depth_of_field) && scene.lens.aperture > 0;
   if (effects.has(Effect::textures)) add_textures(arrays, scene);
   arrays.meshes = scene.meshes;
   for (const Instance& instance : scene.instances) {

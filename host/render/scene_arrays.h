@@ -19,6 +19,8 @@ struct SceneArrays {
   Lighting lighting = {};
   std::vector<LightSource> lights;  // that shading goes over, see LightCounts; none: the one of `lighting`
   LightCounts light_counts;
+  AmbientLight ambient = {};  // where it is occluded, and not part of the materials
+  bool lens = false;          // depth of field is asked for, and the scene has an aperture
   // Where textures are asked for, and there are some:
   TextureArrays textures;
   std::vector<TexturedMaterial> textured_materials;

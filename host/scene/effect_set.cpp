@@ -79,6 +79,9 @@ EffectSet effects_of(const Scene& scene, const EffectChanges& changes) {
     if (light.shadows) effects.call(Effect::shadows, light.origin + ", which casts shadows");
   }
   call_for_textures(scene, effects);
+  if (scene.occlusion && is_bright(scene.ambient_light))
+    effects.call(Effect::ambient_occlusion, "/ambient_occlusion");
+  if (scene.lens.aperture > 0) effects.call(Effect::depth_of_field, scene.lens.origin);
   return changes.applied_to(effects);
 }
 
@@ -110,6 +113,10 @@ EffectChanges EffectChanges::but(Effect effect, bool on) const {
   return changes;
 }
 
+bool occludes_ambient(const Scene& scene, const EffectSet& effects) {
+  return effects.has(Effect::ambient_occlusion) && is_bright(scene.ambient_light);
+}
+
 std::vector<Light> shaded_lights(const Scene& scene, const EffectSet& effects) {
   std::vector<Light> lights = bright_lights(scene);
   // Without the effect only the directional light, if it is one.
@@ -120,7 +127,7 @@ std::vector<Light> shaded_lights(const Scene& scene, const EffectSet& effects) {
   const bool shadows = effects.has(Effect::shadows);
   const bool all_cast = shadows && effects.of(Effect::shadows).overridden;
   for (Light& light : lights) light.shadows = shadows && (light.shadows || all_cast);
-  if (!effects.has(Effect::lights) && !shadows) return {};
+  if (!effects.has(Effect::lights) && !shadows && !occludes_ambient(scene, effects)) return {};
   std::stable_partition(lights.begin(), lights.end(), [](const Light& light) { return !light.shadows; });
   return lights;
 }

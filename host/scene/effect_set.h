@@ -13,9 +13,10 @@ namespace coppice {
 
 // What is simulated only where a scene calls for it. The table in docs/effects.md says what calls for which,
 // and what each adds.
-enum class Effect : std::uint32_t { lights, shadows, textures };
+enum class Effect : std::uint32_t { lights, shadows, textures, depth_of_field, ambient_occlusion };
 
-inline constexpr std::string_view EFFECT_NAMES[] = {"lights", "shadows", "textures"};
+inline constexpr std::string_view EFFECT_NAMES[] = {"lights", "shadows", "textures", "depth_of_field",
+                                                    "ambient_occlusion"};
 inline constexpr std::size_t effect_count = std::size(EFFECT_NAMES);
 
 constexpr std::string_view name_of(Effect effect) { return EFFECT_NAMES[static_cast<std::size_t>(effect)]; }
@@ -35,7 +36,8 @@ class EffectSet {
   // Whether some effect takes triangles of one level: instances are then flattened. Textures that are turned
   // on and that nothing has take nothing.
   bool needs_one_level() const {
-    return has(Effect::shadows) || (has(Effect::textures) && !of(Effect::textures).called_by.empty());
+    return has(Effect::shadows) || has(Effect::ambient_occlusion) ||
+           (has(Effect::textures) && !of(Effect::textures).called_by.empty());
   }
 
   // The first thing that calls for an effect is the one that is named.
@@ -74,8 +76,11 @@ std::string no_effects();
 // What a scene calls for, changed or not.
 EffectSet effects_of(const Scene& scene, const EffectChanges& changes = {});
 
+// Whether something may keep ambient light off: the effect is on, and there is some.
+bool occludes_ambient(const Scene& scene, const EffectSet& effects);
+
 // The lights that shading goes over with these effects, those that cast shadows last, each in the scene's
-// order; none where the directional light alone, without shadows, is all there is.
+// order; none where the directional light alone, without shadows, and plain ambient light are all there is.
 std::vector<Light> shaded_lights(const Scene& scene, const EffectSet& effects);
 
 }  // namespace coppice

@@ -19,9 +19,11 @@ struct RunCounts {
   std::vector<RefitLevel> refit_levels;         // the same of refits
   std::uint64_t rays = 0, hits = 0, steps = 0;  // of the whole trace
   // Of its shadow rays. `could_be`: so many they were if every ray had one for each light that casts shadows.
-  struct {
+  // The same of occlusion rays.
+  struct Secondary {
     std::uint64_t could_be = 0, rays = 0, hits = 0, steps = 0;
-  } shadow;
+  };
+  Secondary shadow, occlusion;
 };
 
 }  // namespace coppice

@@ -8,6 +8,7 @@
 #include "interface/instances.h"
 #include "interface/lights.h"
 #include "interface/morton.h"
+#include "interface/occlusion.h"
 #include "interface/ploc.h"
 #include "interface/refine.h"
 #include "interface/refit.h"
@@ -81,6 +82,9 @@
   STAGE(shadow_marks, ShadowMarksArgs, NoConstants, exactly)                           \
   STAGE(shadow_rays, ShadowRaysArgs, NoConstants, nearly_shadow_rays)                  \
   STAGE(shade_lights, ShadeLightsArgs, ShadeLightsConstants, nearly_radiance)          \
+  STAGE(occlusion_marks, OcclusionMarksArgs, NoConstants, exactly)                     \
+  STAGE(occlusion_rays, OcclusionRaysArgs, NoConstants, nearly_shadow_rays)            \
+  STAGE(shade_ambient, ShadeAmbientArgs, NoConstants, exactly)                         \
   STAGE(show, ShowArgs, ShowConstants, nearly_radiance)                                \
   STAGE(shade_pixels, ShadePixelsArgs, ShadeConstants, nearly_image)                   \
   STAGE(trace_pixels, TracePixelsArgs, TracePixelsConstants, nearly_pixels)            \
@@ -106,7 +110,8 @@ inline constexpr NearlySlot nearly_hits[] = {{"hits", Nearly::hits}, {"counters"
 inline constexpr NearlySlot nearly_any_hits[] = {{"any_hits", Nearly::any_hits},
                                                  {"counters", Nearly::counters},
                                                  {"shadow_hits", Nearly::any_hits},
-                                                 {"shadow_counters", Nearly::counters}};
+                                                 {"shadow_counters", Nearly::counters},
+                                                 {"occlusion_counters", Nearly::counters}};
 inline constexpr NearlySlot nearly_boxes[] = {{"candidates", Nearly::candidates},
                                               {"candidate_counts", Nearly::candidate_counts},
                                               {"counters", Nearly::counters}};

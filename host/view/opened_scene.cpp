@@ -10,11 +10,13 @@ namespace coppice {
 
 namespace {
 
-// Without a tree there are no shadows.
+// Without a tree there are no shadows, and no occlusion.
 EffectSet effects_for_view(const SceneOptions& options, const BuilderChoice& builder, const Scene& scene) {
   EffectSet effects = effects_of(scene, options.effects);
-  if (!builder.on_device() && builder.name == "none" && effects.has(Effect::shadows))
-    effects.override(Effect::shadows, false);
+  if (builder.on_device() || builder.name != "none") return effects;
+  for (const Effect effect : {Effect::shadows, Effect::ambient_occlusion}) {
+    if (effects.has(effect)) effects.override(effect, false);
+  }
   return effects;
 }
 

@@ -37,7 +37,8 @@ struct ViewedFrame {
   double device_ms = 0;
   TraceCounts counts;  // of the camera's rays
   TraceCounts shadow;  // of shadow rays
-  ShowSpan seen;       // of a view with a range
+  TraceCounts occlusion;
+  ShowSpan seen;  // of a view with a range
 };
 
 struct ViewedTree {

@@ -52,7 +52,9 @@ struct BoxCandidate {
 const uint FILM_STRIP = 8;
 
 // Pinhole camera: a ray through film coordinates (x, y) in [0, width) x [0, height) has the direction
-// corner + x * right + y * down.
+// corner + x * right + y * down, of which t counts depths. Through a point (a, b) of the unit disk of a thin
+// lens it starts at position + aside, aside = a * lens_right + b * lens_down, and goes where the pinhole's
+// ray is in focus: in the direction of that ray - aside * per_focus.
 struct Film {
   vec3 position;
   uint width;
@@ -62,7 +64,15 @@ struct Film {
   uint samples;
   vec3 down;
   uint is_sequence;  // 0: samples are a set of so many; 1: the first of a sequence, whatever their number
+  vec3 lens_right;   // of the length of the lens's radius, as is lens_down
+  float per_focus;   // 1 by the depth that is in focus
+  vec3 lens_down;
+  uint padding;
 };
+
+// Dimensions of lib/sampler.glsl, each one use in a picture.
+const uint SAMPLE_LENS = 0x10000u;
+const uint SAMPLE_OCCLUSION = 0x10001u;
 
 // Counted on the device; 64-bit sums as (low, high) words. Steps are pairs of binary nodes that rays visit,
 // or wide nodes that they, or their packets, visit.
@@ -86,7 +96,7 @@ struct CameraRaysArgs {
   uint first_ray;            // of the picture
   uint ray_count;
   uint sample_index;
-  uint padding;
+  uint has_lens;  // as in CameraRaysConstants
 };
 
 // Rays of a trace: `ray_count`, or where there is a `count_at` what its word says, if that is less; no others
@@ -249,7 +259,8 @@ struct TraceBruteForceConstants {
 };
 
 struct CameraRaysConstants {
-  uint is_list;  // 0 where there are no pixels
+  uint is_list;   // 0 where there are no pixels
+  uint has_lens;  // 0: a pinhole
 };
 
 INTERFACE_END

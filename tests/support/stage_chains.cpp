@@ -58,6 +58,8 @@ Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
     scene.light.shadows = true;
     scene.more_lights.push_back({.is_point = true, .place = {1, 3, 2}, .shadows = true, .origin = ""});
   }
+  if (frame.refines) scene.lens.aperture = 0.1f;
+  if (frame.lights) scene.occlusion = AmbientOcclusion{2};
   SceneArrays arrays = scene_arrays(scene, effects_of(scene));
   arrays.lighting = {};  // padding and all
   if (!frame.lights) arrays.lighting.light_direction = {0.6f, 0.8f, 0};
@@ -75,6 +77,7 @@ Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
   trace_options.keep_noise = trace_options.adaptive = frame.refines;
   trace_options.lights = arrays.light_counts;
   trace_options.textures = arrays.texture_counts();
+  trace_options.lens = arrays.lens;
   std::optional<WidePlan> wide;
   if (is_wide(frame.walk)) wide = plan_wide(layout, build, &build);
   const TracePlan trace =
