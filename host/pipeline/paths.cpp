@@ -69,8 +69,8 @@ class PathChain {
          camera_.count, counts_.choices, camera_.sample_index, bounce_, counts_.lobes, 0},
         groups(), lobes());
     if (!counts_.shadows) return;
-    append_queue({}, {}, chain_.at(slots_.rays), {}, chain_.at(slots_.light_count));
-    AnyHitSlots rays{slots_.rays, slots_.any_hits, slots_.light_counters, {}};
+    append_queue({}, {}, chain_.at(slots_.light_rays), {}, chain_.at(slots_.light_count));
+    AnyHitSlots rays{slots_.light_rays, slots_.any_hits, slots_.light_counters, {}};
     rays.filter.count_at = slots_.light_count;
     append_any_hits(chain_, tree_, rays, camera_.count, options_);
     chain_.run(
@@ -140,6 +140,7 @@ PathSlots plan_paths(Layout& layout, const PathCounts& counts, std::uint32_t tri
   slots.paths = layout.add<Path>("paths", band_rays);
   slots.bounced_paths = layout.add<Path>("bounced_paths", band_rays);
   slots.rays = layout.add<Ray>("path_rays", band_rays);
+  slots.light_rays = layout.add<Ray>("light_rays", band_rays);
   slots.marked_rays = layout.add<Ray>("marked_rays", band_rays);
   slots.hits = layout.add<Hit>("path_hits", band_rays);
   slots.surfaces = layout.add<SurfacePoint>("surfaces", band_rays);

@@ -24,13 +24,13 @@ struct PathCounts {
 
 // What paths keep, for the rays of a band; all empty where there are none.
 struct PathSlots {
-  Slot<SurfaceMaterial> materials;    // in: emission and base colour
-  Slot<PathMaterial> path_materials;  // in
-  Slot<LightSource> lights;           // in
-  Slot<LightChoice> choices;          // in
-  Slot<float> emitter_probability;    // in, one a triangle
-  Slot<Path> paths, bounced_paths;    // the queue, and what is marked for the next one
-  Slot<Ray> rays, marked_rays;        // of the queue after the first bounce, and of what is marked
+  Slot<SurfaceMaterial> materials;          // in: emission and base colour
+  Slot<PathMaterial> path_materials;        // in
+  Slot<LightSource> lights;                 // in
+  Slot<LightChoice> choices;                // in
+  Slot<float> emitter_probability;          // in, one a triangle
+  Slot<Path> paths, bounced_paths;          // the queue, and what is marked for the next one
+  Slot<Ray> rays, light_rays, marked_rays;  // of the queue after the first bounce, and of what is marked
   Slot<Hit> hits;
   Slot<SurfacePoint> surfaces;
   Slot<vec3> light_radiance;

@@ -150,6 +150,16 @@ void TracePieces::append_all_lights(Chain& chain, Vec3Buffer radiance) const {
                 plan_.options);
 }
 
+void TracePieces::append_paths_of(Chain& chain, Vec3Buffer radiance) const {
+  const auto [triangles, material_index, materials] = surfaces(chain);
+  append_paths(chain, tree_, plan_.paths,
+               {triangles, material_index, chain.at(plan_.rays, range_.first),
+                chain.at(plan_.hits, range_.first), radiance, chain.at(plan_.lighting),
+                address_or_null(chain, plan_.traced_pixels, band_first_ + range_.first),
+                band_first_ + range_.first, range_.count, summed_samples(), sample_},
+               plan_.options);
+}
+
 void TracePieces::append_show(Chain& chain, Vec3Buffer radiance) const {
   const ShowSlots& show = plan_.show;
   const PlacedHitSlots placed = levels_ ? levels_->hits : PlacedHitSlots{};
@@ -182,8 +192,12 @@ void TracePieces::append_radiance(Chain& chain) const {
     append_show(chain, radiance);
   } else {
     append_textures(chain);
-    append_shade(chain, radiance);
-    append_all_lights(chain, radiance);
+    if (options.paths.any()) {
+      append_paths_of(chain, radiance);
+    } else {
+      append_shade(chain, radiance);
+      append_all_lights(chain, radiance);
+    }
   }
   if (options.keep_noise)
     append_sample(chain, plan_.noise, plan_.radiance,

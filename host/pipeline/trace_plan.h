@@ -7,6 +7,7 @@
 #include "pipeline/build_plan.h"
 #include "pipeline/lights.h"
 #include "pipeline/ray_filter.h"
+#include "pipeline/paths.h"
 #include "pipeline/refine.h"
 #include "pipeline/textures.h"
 #include "pipeline/walk.h"
@@ -39,6 +40,7 @@ struct TraceOptions {
   bool directional_light = true;    // what the scene calls for
   LightCounts lights{};             // of colours
   TextureCounts textures{};         // of colours
+  PathCounts paths{};               // of colours
   std::uint32_t show = SHOW_COLOR;  // SHOW_; brute force has no steps
   bool keep_hits = false;           // the rays of the last sample and their hits are asked for
   ToneMapping tone{};               // of colours
@@ -109,6 +111,7 @@ struct TracePlan : RaySlots {
   Slot<uint> traced_pixels;  // only these of the picture, by their places; empty: all
   LightSlots lights;
   TextureSlots textures;
+  PathSlots paths;
   ShowSlots show;
 };
 

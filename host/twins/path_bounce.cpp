@@ -47,12 +47,9 @@ void path_bounce(const PathBounceArgs& args) {
     const bool goes_through = dot_product(normal, next.light) < 0;
     if (goes_through != (next.flags == BSDF_TRANSMISSION)) continue;
     args.marks[i] = 1;
-    args.bounced_paths[i] = {throughput * weight,
-                             path.pixel,
-                             next.pdf,
-                             next.flags == BSDF_DIFFUSE ? PATH_SEES_AMBIENT : 0u,
-                             path.seed,
-                             0};
+    args.bounced_paths[i] = {
+        throughput * weight, path.pixel, next.pdf, next.flags == BSDF_DIFFUSE ? PATH_SEES_AMBIENT : 0u,
+        path.seed,           0};
     args.bounced_rays[i] = {leave_surface(triangle, hit, goes_through ? -normal : normal), 0, next.light,
                             std::numeric_limits<float>::infinity()};
   }

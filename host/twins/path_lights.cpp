@@ -93,9 +93,9 @@ void path_lights(const PathLightsArgs& args) {
                   args, choice, origin,
                   sample_2d(path.seed, args.sample_index, path_dimension(args.bounce, PATH_PLACES_LIGHT)));
     if (!light) continue;
-    const vec3 colour = reflected_towards(args.surfaces[i], -unit_vector(direction), *light,
-                                          switches_of(args.lobes)) *
-                        light->radiance;
+    const vec3 colour =
+        reflected_towards(args.surfaces[i], -unit_vector(direction), *light, switches_of(args.lobes)) *
+        light->radiance;
     if (!(std::fmax(std::fmax(colour.x, colour.y), colour.z) > 0)) continue;
     if (choice.shadows == 0) {
       args.radiance[path.pixel] += path.throughput * colour;
