@@ -36,7 +36,7 @@ void main() {
   Hit hit = load_hit(args.hits, i);
   if (hit.triangle == NO_TRIANGLE) {
     bool ambient = (path.flags & PATH_SEES_AMBIENT) != 0u;
-    vec3 colour = ambient ? args.ambient : sky(ray.direction, args.lighting.at[0]);
+    vec3 colour = ambient ? args.ambient.at[0] : sky(ray.direction, args.lighting.at[0]);
     add_radiance(args.radiance, path.pixel, path.throughput, colour);
     return;
   }
@@ -49,7 +49,7 @@ void main() {
   SurfacePoint surface = surface_point(colours.diffuse, material, enters ? normal : -normal, enters);
   precise vec3 seen = colours.ambient * emission_weight(path, hit, triangle, abs(cosine));
   if (PATH_BOUNCES_LIGHT == 0u) {
-    precise vec3 reflected = surface.diffuse * (1.0 - surface.transmission) * args.ambient;
+    precise vec3 reflected = surface.diffuse * (1.0 - surface.transmission) * args.ambient.at[0];
     seen += reflected;
   }
   add_radiance(args.radiance, path.pixel, path.throughput, seen);

@@ -41,7 +41,7 @@ double mean_samples(const FrameReport& report, const FrameRuns& frame) {
 }
 
 double mrays_per_s(const FrameReport& report) {
-  return static_cast<double>(report.rays + report.shadow.rays) / report.trace_ms / 1000;
+  return static_cast<double>(report.rays + report.shadow.rays + report.bounced.rays) / report.trace_ms / 1000;
 }
 
 }  // namespace
@@ -116,6 +116,10 @@ std::string text_of(const FrameReport& report, const Scene& scene, const FrameRu
     text += format("  shadows  %9llu rays, %llu of them blocked\n",
                    static_cast<unsigned long long>(report.shadow.rays),
                    static_cast<unsigned long long>(report.shadow.hits));
+  if (report.bounced.rays > 0)
+    text += format("  bounces  %9llu rays, %llu of them hit\n",
+                   static_cast<unsigned long long>(report.bounced.rays),
+                   static_cast<unsigned long long>(report.bounced.hits));
   text += text_of(report.shown, scene);
   text += format("  write    %9.1f ms\n", around.write_ms);
   if (!report.kernels.rows.empty() && !build.kernels.rows.empty()) text += text_of(build.kernels);

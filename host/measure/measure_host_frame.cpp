@@ -27,11 +27,13 @@ std::uint64_t count_hits(std::span<const Hit> hits) {
 
 void trace_closest_on_host(const TraceClosestArgs& args, const Bvh& bvh, std::span<const Triangle> triangles,
                            FrameReport& report) {
-  const std::span<const Ray> rays(&args.rays[0], args.ray_count);
-  const std::span<Hit> hits(&args.hits[0], args.ray_count);
+  const bool bounced = args.count_at.value != 0;
+  const std::uint32_t count = bounced ? args.count_at[0] : args.ray_count;
+  const std::span<const Ray> rays(&args.rays[0], count);
+  const std::span<Hit> hits(&args.hits[0], count);
   trace_all(bvh.nodes, triangles, rays, hits);
-  report.rays += rays.size();
-  report.hits += count_hits(hits);
+  (bounced ? report.bounced.rays : report.rays) += rays.size();
+  (bounced ? report.bounced.hits : report.hits) += count_hits(hits);
 }
 
 // Of shadow rays: whether there is a closest hit.

@@ -13,6 +13,13 @@ RunCounts counts_of_trace(const TraceCounters& counters) {
 
 RunCounts counts_of_picture(const GpuExecutor& executor, const TracePlan& plan) {
   RunCounts counts = counts_of_trace(executor.read(plan.counters)[0]);
+  if (plan.options.paths.any() && plan.options.show == SHOW_COLOR) {
+    const TraceCounts bounced = counts_of(executor.read(plan.paths.bounce_counters)[0]);
+    const TraceCounts lit = counts_of(executor.read(plan.paths.light_counters)[0]);
+    const std::uint64_t bounces = plan.options.paths.bounces;
+    counts.paths = {counts.rays * bounces, bounced.rays, bounced.hits, bounced.steps};
+    counts.shadow = {counts.rays * (bounces + 1), lit.rays, lit.hits, lit.steps};
+  }
   if (plan.lights.counters.count == 0) return counts;
   const TraceCounts shadow = counts_of(executor.read(plan.lights.counters)[0]);
   counts.shadow = {counts.rays * plan.options.lights.shadows, shadow.rays, shadow.hits, shadow.steps};

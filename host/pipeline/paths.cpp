@@ -55,8 +55,8 @@ class PathChain {
                {camera_.triangles, camera_.path_index, chain_.at(slots_.materials), camera_.path_index,
                 chain_.at(slots_.path_materials), address_or_null(chain_, slots_.emitter_probability),
                 camera_.lighting, queue.rays, queue.hits, chain_.at(slots_.paths), chain_.at(slots_.surfaces),
-                camera_.radiance, chain_.at(slots_.queue_count), camera_.count, counts_.ambient,
-                counts_.bounces_light, 0},
+                camera_.radiance, chain_.at(slots_.queue_count), chain_.at(slots_.ambient), camera_.count,
+                counts_.bounces_light},
                groups(), {counts_.bounces_light});
   }
 
@@ -134,6 +134,7 @@ PathSlots plan_paths(Layout& layout, const PathCounts& counts, std::uint32_t tri
   if (!counts.any()) return slots;
   slots.materials = layout.add<SurfaceMaterial>("path_colours", material_count);
   slots.path_materials = layout.add<PathMaterial>("path_materials", material_count);
+  slots.ambient = layout.add<vec3>("path_ambient", 1);
   slots.lights = layout.add<LightSource>("path_lights", counts.lights);
   slots.choices = layout.add<LightChoice>("light_choices", counts.choices);
   slots.emitter_probability = layout.add<float>("emitter_probability", counts.emitters ? triangle_count : 0);

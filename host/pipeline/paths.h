@@ -9,23 +9,24 @@ namespace coppice {
 
 // What paths of light a picture follows.
 struct PathCounts {
-  std::uint32_t bounces = 0;   // at most, 0: no paths but the camera's rays, which are shaded otherwise
+  bool follows = false;        // none: the camera's rays are shaded where they end
+  std::uint32_t bounces = 0;   // at most
   std::uint32_t choices = 0;   // lights to choose from
   std::uint32_t lights = 0;    // of those that are listed
   bool emitters = false;       // triangles are among them
   bool shadows = false;        // something may be in the way of some
   std::uint32_t lobes = 0;     // PATH_LOBE_
   bool bounces_light = false;  // ambient light is met by diffuse bounces alone
-  vec3 ambient{0};
 
   bool operator==(const PathCounts&) const = default;
-  bool any() const { return bounces > 0; }
+  bool any() const { return follows; }
 };
 
 // What paths keep, for the rays of a band; all empty where there are none.
 struct PathSlots {
   Slot<SurfaceMaterial> materials;          // in: emission and base colour
   Slot<PathMaterial> path_materials;        // in
+  Slot<vec3> ambient;                       // in, one
   Slot<LightSource> lights;                 // in
   Slot<LightChoice> choices;                // in
   Slot<float> emitter_probability;          // in, one a triangle

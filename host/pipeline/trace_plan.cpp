@@ -93,7 +93,8 @@ float ToneMapping::exposure() const { return static_cast<float>(std::exp2(stops)
 
 bool keeps_radiance(const TraceOptions& options) {
   return options.samples > 1 || options.show != SHOW_COLOR || options.lights.lights > 0 ||
-         options.textures.textures > 0 || options.paths.any() || options.tone.changes() || keeps_whole_radiance(options);
+         options.textures.textures > 0 || options.paths.any() || options.tone.changes() ||
+         keeps_whole_radiance(options);
 }
 
 bool keeps_whole_radiance(const TraceOptions& options) { return options.keep_radiance || options.keep_noise; }

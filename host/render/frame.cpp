@@ -44,6 +44,9 @@ FramePlan plan_frame(Layout& layout, const SceneArrays& scene, const FrameOption
   const bool colours = options.trace.show == SHOW_COLOR;
   options.trace.lights = colours ? scene.light_counts : LightCounts{};
   options.trace.textures = colours ? scene.texture_counts() : TextureCounts{};
+  options.trace.paths = colours ? scene.paths.counts : PathCounts{};
+  if (options.trace.paths.any() && options.trace.walk == Walk::brute_force)
+    throw std::invalid_argument("paths are traced through a tree");
   if (options.trace.lights.shadows > 0 && options.trace.walk == Walk::brute_force)
     throw std::invalid_argument("shadows are traced through a tree");
   if (!scene.mesh_index.empty()) return plan_instanced_frame(layout, scene, options);

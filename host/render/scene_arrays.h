@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "interface/instances.h"
-#include "pipeline/lights.h"
 #include "pipeline/textures.h"
+#include "render/path_arrays.h"
 #include "render/texture_arrays.h"
 #include "scene/effect_set.h"
 
@@ -19,6 +19,7 @@ struct SceneArrays {
   Lighting lighting = {};
   std::vector<LightSource> lights;  // that shading goes over, see LightCounts; none: the one of `lighting`
   LightCounts light_counts;
+  PathArrays paths;  // that shading is left to, if there are any
   // Where textures are asked for, and there are some:
   TextureArrays textures;
   std::vector<TexturedMaterial> textured_materials;

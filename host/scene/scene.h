@@ -25,6 +25,7 @@ struct Material {
   float shininess = 1.0f;            // Ns, the Phong exponent
   float opacity = 1.0f;              // d, or 1 - Tr; 0 is invisible, 1 is solid
   float index_of_refraction = 1.0f;  // Ni
+  glm::vec3 filter{1.0f};            // Tf, of what goes through
   int illum = 1;                     // illumination model, 0 to 10
   std::optional<float> roughness{};  // Pr, from 0 to 1
   std::optional<float> metallic{};   // Pm, from 0 to 1
@@ -126,9 +127,11 @@ struct Scene {
   // Of the faces of an OBJ or PLY file, before they are cut into triangles (FaceDigest); 0 of others.
   std::uint64_t face_digest = 0;
   DirectionalLight light;
-  std::string light_origin;        // what the file calls it; empty for the default one
-  std::vector<Light> more_lights;  // at most MAX_LIGHTS - 1
-  glm::vec3 ambient_light{0.35f};  // linear RGB, multiplies Material::diffuse
+  std::string light_origin;          // what the file calls it; empty for the default one
+  std::vector<Light> more_lights;    // at most MAX_LIGHTS - 1
+  glm::vec3 ambient_light{0.35f};    // linear RGB, multiplies Material::diffuse
+  bool global_illumination = false;  // whether light goes on from diffuse surfaces
+  std::uint32_t bounces = 4;         // of paths at most, beside the camera's rays
   // Null: nothing moves but a swarm. With instances it has no vertices: these are in InstancedMesh::motion.
   std::shared_ptr<const Motion> motion;
   std::vector<std::string> warnings;  // one line each, what was odd about the input but not fatal

@@ -66,7 +66,8 @@ struct SceneOptions {
   std::string spec = "grove";  // as open_scene takes it
   std::string up = "y";        // one of UP_AXES
   bool keep_instances = false;
-  EffectChanges effects{};  // beside what it calls for
+  EffectChanges effects{};                 // beside what it calls for
+  std::optional<std::uint32_t> bounces{};  // of paths at most; none: the scene's own
 };
 
 }  // namespace coppice

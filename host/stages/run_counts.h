@@ -22,10 +22,10 @@ struct RunCounts {
   struct {
     std::uint64_t could_be = 0, rays = 0, hits = 0, steps = 0;
   } shadow;
-  // Of its paths, those of cameras not counted. `could_be`: as many if each went on at every bounce.
+  // Of its paths, those of cameras not counted; of their light rays `shadow`. `could_be`: as many if each
+  // went on at every bounce.
   struct {
     std::uint64_t could_be = 0, rays = 0, hits = 0, steps = 0;
-    std::uint64_t light_rays = 0, light_hits = 0, light_steps = 0;
   } paths;
 };
 

@@ -124,9 +124,8 @@ inline constexpr NearlySlot nearly_materials[] = {{"hit_materials", Nearly::radi
 inline constexpr NearlySlot nearly_radiance[] = {{"radiance", Nearly::radiance}};
 inline constexpr NearlySlot nearly_surfaces[] = {{"radiance", Nearly::radiance},
                                                  {"surfaces", Nearly::radiance}};
-inline constexpr NearlySlot nearly_lights[] = {{"radiance", Nearly::radiance},
-                                               {"light_radiance", Nearly::radiance},
-                                               {"marked_rays", Nearly::rays}};
+inline constexpr NearlySlot nearly_lights[] = {
+    {"radiance", Nearly::radiance}, {"light_radiance", Nearly::radiance}, {"marked_rays", Nearly::rays}};
 inline constexpr NearlySlot nearly_marked[] = {{"marked_rays", Nearly::rays},
                                                {"bounced_paths", Nearly::radiance}};
 inline constexpr NearlySlot nearly_noise[] = {{"noise_sums", Nearly::noise}};

@@ -34,14 +34,13 @@ Bytes path_lights(const PathLightsArgs& a, const RunCounts& counts) {
   return Bytes{a.ray_count} * 4 + path_share(queued(counts), a.ray_count, counts) * sizeof(Hit) +
          path_share(met(counts), a.ray_count, counts) * (sizeof(Path) + sizeof(vec3) + 2 * sizeof(Triangle) +
                                                          sizeof(SurfacePoint) + sizeof(LightChoice)) +
-         path_share(counts.paths.light_rays, a.ray_count, counts) * (sizeof(Ray) + sizeof(vec3));
+         path_share(counts.shadow.rays, a.ray_count, counts) * (sizeof(Ray) + sizeof(vec3));
 }
 
 Bytes path_light_add(const PathLightAddArgs& a, const RunCounts& counts) {
   return path_share(queued(counts), a.ray_count, counts) * 4 +
-         path_share(counts.paths.light_rays, a.ray_count, counts) * 8 +
-         path_share(counts.paths.light_rays - counts.paths.light_hits, a.ray_count, counts) *
-             (4 + 3 * sizeof(vec3));
+         path_share(counts.shadow.rays, a.ray_count, counts) * 8 +
+         path_share(counts.shadow.rays - counts.shadow.hits, a.ray_count, counts) * (4 + 3 * sizeof(vec3));
 }
 
 Bytes path_bounce(const PathBounceArgs& a, const RunCounts& counts) {
@@ -54,7 +53,7 @@ Bytes path_bounce(const PathBounceArgs& a, const RunCounts& counts) {
 Bytes path_queue(const PathQueueArgs& a, const RunCounts& counts) {
   const bool paths = a.marked_paths.value != 0;
   return Bytes{a.ray_count} * 8 +
-         path_share(paths ? counts.paths.rays : counts.paths.light_rays, a.ray_count, counts) *
+         path_share(paths ? counts.paths.rays : counts.shadow.rays, a.ray_count, counts) *
              (2 * sizeof(Ray) + (paths ? 2 * sizeof(Path) + sizeof(Hit) : 0));
 }
 

@@ -31,7 +31,7 @@ void path_surfaces(const PathSurfacesArgs& args) {
     vec3& radiance = args.radiance[path.pixel];
     if (hit.triangle == NO_TRIANGLE) {
       const bool ambient = (path.flags & PATH_SEES_AMBIENT) != 0;
-      radiance += path.throughput * (ambient ? args.ambient : sky_colour(direction, args.lighting[0]));
+      radiance += path.throughput * (ambient ? args.ambient[0] : sky_colour(direction, args.lighting[0]));
       continue;
     }
     const vec3 normal = unit_normal(args.triangles[hit.triangle]);
@@ -47,7 +47,7 @@ void path_surfaces(const PathSurfacesArgs& args) {
     surface.specular = material.specular + (base - material.specular) * material.metallic;
     surface.transmission = material.transmission;
     vec3 seen = colours.ambient * share_of_path(args, path, hit, std::fabs(cosine));
-    if (!bounces_light) seen += surface.diffuse * (1.0f - material.transmission) * args.ambient;
+    if (!bounces_light) seen += surface.diffuse * (1.0f - material.transmission) * args.ambient[0];
     radiance += path.throughput * seen;
   }
 }

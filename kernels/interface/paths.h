@@ -123,10 +123,9 @@ struct PathSurfacesArgs {
   SurfacePointBuffer surfaces;  // out, one a ray; of a miss not written
   Vec3Buffer radiance;
   READS(UintBuffer) count_at;  // as in TraceClosestArgs
+  READS(Vec3Buffer) ambient;   // one
   uint ray_count;
-  vec3 ambient;
   uint bounces_light;  // 1: ambient light is what diffuse bounces meet; 0: it reaches all surfaces
-  uint padding;
 };
 
 struct PathSurfacesConstants {
