@@ -84,6 +84,7 @@ Material material_of(const GltfDocument& document, std::size_t index, GltfTextur
     material.emission_map = std::exchange(material.diffuse_map, {});
     material.diffuse = material.specular = glm::vec3(0);
     material.illum = 0;
+    material.is_unlit = true;
   }
   return material;
 }

@@ -27,6 +27,7 @@ struct Material {
   float index_of_refraction = 1.0f;  // Ni
   glm::vec3 filter{1.0f};            // Tf, of what goes through
   int illum = 1;                     // illumination model, 0 to 10
+  bool is_unlit = false;             // emission is its colour, and lights nothing
   std::optional<float> roughness{};  // Pr, from 0 to 1
   std::optional<float> metallic{};   // Pm, from 0 to 1
   // Maps (scene/material_maps.h). Each multiplies what it is a map of; the last two of a material without

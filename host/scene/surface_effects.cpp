@@ -6,7 +6,7 @@
 namespace coppice {
 
 bool is_emitter(const Material& material) {
-  return material.illum != 0 && !material.emission_map &&
+  return !material.is_unlit && !material.emission_map &&
          glm::any(glm::greaterThan(material.emission, glm::vec3(0)));
 }
 

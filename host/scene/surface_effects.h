@@ -9,7 +9,7 @@ namespace coppice {
 inline constexpr float MIRROR_SHININESS = 1000;           // Ns, from which on a reflection is sharp
 inline constexpr float MIRROR_SHININESS_FROM_ABSENT = 1;  // and up to which: an MTL without Ns has 1
 
-// Whether its surface is a light. An `illum` of 0 has its colour without being one.
+// Whether its surface is a light. What is unlit has its colour without being one.
 bool is_emitter(const Material& material);
 
 // 0 to 1. Where a map decides what is metal, which paths do not read, nothing is.
