@@ -16,11 +16,12 @@ struct PathQueue {
 
 class PathChain {
  public:
-  PathChain(Chain& chain, const TreeSlots& tree, const PathSlots& slots, const CameraPaths& camera,
-            const TraceOptions& options)
+  PathChain(Chain& chain, const TreeSlots& tree, const PathSlots& slots, const TextureSlots& textures,
+            const CameraPaths& camera, const TraceOptions& options)
       : chain_(chain),
         tree_(tree),
         slots_(slots),
+        textures_(textures),
         camera_(camera),
         options_(options),
         counts_(options.paths),
@@ -50,9 +51,17 @@ class PathChain {
     return {has(PATH_LOBE_DIFFUSE), has(PATH_LOBE_REFLECTS), has(PATH_LOBE_TRANSMITS)};
   }
 
+  // Textures are read where rays arrive, at the level of a camera's ray of that length.
   void append_surfaces(const PathQueue& queue) {
+    const bool textured = options_.textures.textures > 0;
+    const auto hit_materials = chain_.at(textures_.hit_materials);
+    if (textured)
+      append_textures(chain_, textures_,
+                      {camera_.film, camera_.triangles, camera_.path_index, queue.rays, queue.hits,
+                       hit_materials, chain_.at(slots_.queue_count), camera_.count});
     chain_.run(stages::path_surfaces,
-               {camera_.triangles, camera_.path_index, chain_.at(slots_.materials), camera_.path_index,
+               {camera_.triangles, textured ? UintBuffer{} : camera_.path_index,
+                textured ? hit_materials : chain_.at(slots_.materials), camera_.path_index,
                 chain_.at(slots_.path_materials), address_or_null(chain_, slots_.emitter_probability),
                 camera_.lighting, queue.rays, queue.hits, chain_.at(slots_.paths), chain_.at(slots_.surfaces),
                 camera_.radiance, chain_.at(slots_.queue_count), chain_.at(slots_.ambient), camera_.count,
@@ -119,6 +128,7 @@ class PathChain {
   Chain& chain_;
   const TreeSlots& tree_;
   const PathSlots& slots_;
+  const TextureSlots& textures_;
   const CameraPaths& camera_;
   const TraceOptions& options_;
   const PathCounts counts_;
@@ -157,9 +167,9 @@ PathSlots plan_paths(Layout& layout, const PathCounts& counts, std::uint32_t tri
   return slots;
 }
 
-void append_paths(Chain& chain, const TreeSlots& tree, const PathSlots& slots, const CameraPaths& camera,
-                  const TraceOptions& options) {
-  PathChain(chain, tree, slots, camera, options).append();
+void append_paths(Chain& chain, const TreeSlots& tree, const PathSlots& slots, const TextureSlots& textures,
+                  const CameraPaths& camera, const TraceOptions& options) {
+  PathChain(chain, tree, slots, textures, camera, options).append();
 }
 
 }  // namespace coppice

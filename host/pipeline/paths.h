@@ -4,6 +4,7 @@
 
 #include "interface/paths.h"
 #include "pipeline/lights.h"
+#include "pipeline/textures.h"
 
 namespace coppice {
 
@@ -46,6 +47,7 @@ PathSlots plan_paths(Layout& layout, const PathCounts& counts, std::uint32_t tri
 
 // Camera rays of a range and what they have hit.
 struct CameraPaths {
+  FilmBuffer film;
   TriangleBuffer triangles;
   UintBuffer path_index;  // material of each triangle
   RayBuffer rays;
@@ -59,7 +61,7 @@ struct CameraPaths {
 };
 
 // All radiance that reaches these pixels by paths. Throws std::invalid_argument by brute force.
-void append_paths(Chain& chain, const TreeSlots& tree, const PathSlots& slots, const CameraPaths& camera,
-                  const TraceOptions& options);
+void append_paths(Chain& chain, const TreeSlots& tree, const PathSlots& slots, const TextureSlots& textures,
+                  const CameraPaths& camera, const TraceOptions& options);
 
 }  // namespace coppice

@@ -33,6 +33,7 @@ struct TextureHitsArgs {
   READS(RayBuffer) rays;                  // ray_count
   READS(HitBuffer) hits;                  // ray_count
   SurfaceMaterialBuffer hit_materials;    // out, ray_count
+  READS(UintBuffer) count_at;             // as in TraceClosestArgs
   uint ray_count;
   uint padding;
 };
