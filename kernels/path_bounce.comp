@@ -5,6 +5,8 @@
 #include "lib/path.glsl"
 #include "lib/offset_origin.glsl"
 #include "lib/sampler.glsl"
+#include "lib/subgroup.glsl"
+#include "lib/trace_counters.glsl"
 
 layout(local_size_x = PATH_GROUP) in;
 layout(push_constant, scalar) uniform Push { PathBounceArgs args; };
@@ -29,33 +31,39 @@ float survival(Path path, vec3 throughput) {
   return result;
 }
 
-void main() {
-  uint i = gl_GlobalInvocationID.x;
-  if (i >= args.ray_count) return;
-  args.marks.at[i] = 0u;
-  if (i >= counted(args.count_at, args.ray_count)) return;
+// Stores the next ray of path i, and returns of which lobe it is: BSDF_, none where the path ends.
+uint go_on(uint i) {
   Hit hit = load_hit(args.hits, i);
-  if (hit.triangle == NO_TRIANGLE) return;
+  if (hit.triangle == NO_TRIANGLE) return BSDF_NONE;
   Path path = args.paths.at[i];
   vec3 direction = args.rays.at[i].direction;
   vec2 u = sample_2d(path.seed, args.sample_index, path_dimension(args.bounce, PATH_TURNS));
   BsdfSample next = bsdf_sample(args.surfaces.at[i], -unit(direction), random_of(path, PATH_PICKS_LOBE), u);
-  if (next.flags == BSDF_NONE) return;
+  if (next.flags == BSDF_NONE) return BSDF_NONE;
   precise vec3 throughput = path.throughput * next.weight;
   if (next.flags == BSDF_TRANSMISSION) {
     precise vec3 filtered = throughput * args.path_materials.at[args.path_index.at[hit.triangle]].filter_colour;
     throughput = filtered;
   }
   float more = survival(path, throughput);
-  if (more == 0.0) return;
+  if (more == 0.0) return BSDF_NONE;
   precise vec3 carried = throughput * more;
   Triangle triangle = args.triangles.at[hit.triangle];
   vec3 normal = normal_towards(triangle, direction);
   bool goes_through = exact_dot(normal, next.light) < 0.0;
-  if (goes_through != (next.flags == BSDF_TRANSMISSION)) return;
+  if (goes_through != (next.flags == BSDF_TRANSMISSION)) return BSDF_NONE;
   vec3 origin = offset_origin(triangle, hit.u, hit.v, goes_through ? -normal : normal);
-  args.marks.at[i] = 1u;
   uint flags = next.flags == BSDF_DIFFUSE ? PATH_SEES_AMBIENT : 0u;
   args.bounced_paths.at[i] = Path(carried, path.pixel, next.pdf, flags, path.seed, 0u);
   store_ray(args.bounced_rays, i, Ray(origin, 0.0, next.light, uintBitsToFloat(0x7f800000u)));
+  return next.flags;
+}
+
+void main() {
+  uint i = gl_GlobalInvocationID.x;
+  uint lobe = i < counted(args.count_at, args.ray_count) ? go_on(i) : BSDF_NONE;
+  if (i < args.ray_count) args.marks.at[i] = lobe == BSDF_NONE ? 0u : 1u;
+  COUNT_INTO(args.counters.at[0].diffuse, lobe == BSDF_DIFFUSE ? 1u : 0u)
+  COUNT_INTO(args.counters.at[0].reflected, (lobe & (BSDF_GLOSSY | BSDF_MIRROR)) != 0u ? 1u : 0u)
+  COUNT_INTO(args.counters.at[0].transmitted, lobe == BSDF_TRANSMISSION ? 1u : 0u)
 }

@@ -183,7 +183,8 @@ TEST(Nearly, OnlyStagesThatDivideOrTakeRootsAreNearlyEqual) {
     const bool may = traces || name == "camera_rays" || name == "bounce_rays" || name == "shade" ||
                      name == "resolve" || name == "shade_pixels" || name == "show" || name == "shadow_rays" ||
                      name == "noise_sum" || name == "noise_marks" || name == "shade_lights" ||
-                     name == "texture_hits";
+                     name == "texture_hits" || name == "path_surfaces" || name == "path_lights" ||
+                     name == "path_bounce";
     EXPECT_EQ(!stage->nearly.empty(), may) << name;
   }
 }

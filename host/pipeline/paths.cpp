@@ -90,12 +90,13 @@ class PathChain {
   }
 
   void append_bounce(const PathQueue& queue) {
-    chain_.run(stages::path_bounce,
-               {camera_.triangles, camera_.path_index, chain_.at(slots_.path_materials), queue.rays,
-                queue.hits, chain_.at(slots_.paths), chain_.at(slots_.surfaces),
-                chain_.at(slots_.marked_rays), chain_.at(slots_.bounced_paths), marks_,
-                chain_.at(slots_.queue_count), camera_.count, camera_.sample_index, bounce_, counts_.lobes},
-               groups(), lobes());
+    chain_.run(
+        stages::path_bounce,
+        {camera_.triangles, camera_.path_index, chain_.at(slots_.path_materials), queue.rays, queue.hits,
+         chain_.at(slots_.paths), chain_.at(slots_.surfaces), chain_.at(slots_.marked_rays),
+         chain_.at(slots_.bounced_paths), marks_, chain_.at(slots_.lobe_counters),
+         chain_.at(slots_.queue_count), camera_.count, camera_.sample_index, bounce_, counts_.lobes},
+        groups(), lobes());
     append_queue(chain_.at(slots_.bounced_paths), chain_.at(slots_.paths), chain_.at(slots_.rays),
                  chain_.at(slots_.hits), chain_.at(slots_.queue_count));
   }
@@ -163,6 +164,7 @@ PathSlots plan_paths(Layout& layout, const PathCounts& counts, std::uint32_t tri
   slots.light_count = layout.add<uint>("light_count", 1);
   slots.any_hits = layout.add<uint>("light_hits", band_rays);
   slots.bounce_counters = layout.add<TraceCounters>("bounce_counters", 1);
+  slots.lobe_counters = layout.add<PathCounters>("lobe_counters", 1);
   slots.light_counters = layout.add<TraceCounters>("light_counters", 1);
   return slots;
 }

@@ -39,6 +39,7 @@ struct PathSlots {
   Slot<uvec4> marks, places;
   Slot<uint> scan_status, queue_count, light_count, any_hits;
   Slot<TraceCounters> bounce_counters, light_counters;
+  Slot<PathCounters> lobe_counters;
 };
 
 // Throws LayoutError if a slot does not fit a block.

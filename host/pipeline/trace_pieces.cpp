@@ -228,6 +228,7 @@ std::uint64_t TracePieces::append(Chain& chain, std::uint64_t work) {
   if (!cleared_) chain.clear(plan_.lights.counters);
   if (!cleared_) chain.clear(plan_.paths.bounce_counters);
   if (!cleared_) chain.clear(plan_.paths.light_counters);
+  if (!cleared_) chain.clear(plan_.paths.lobe_counters);
   cleared_ = true;
   std::uint64_t appended = 0;
   while (!done() && has_room(tree_, plan_.options, appended, work)) {

@@ -5,6 +5,7 @@
 #include "twins/leave_surface.h"
 #include "twins/paths.h"
 #include "twins/sampler.h"
+#include "twins/trace_counts.h"
 #include "twins/vectors.h"
 
 namespace coppice::twins {
@@ -19,6 +20,11 @@ float weight_of_going_on(const PathBounceArgs& args, const Path& path, const vec
   const float chance = std::fmin(largest, PATH_MOST_SURE);
   const float u = sample_1d(path.seed, args.sample_index, path_dimension(args.bounce, PATH_ENDS));
   return u < chance ? 1.0f / chance : 0.0f;
+}
+
+uvec2& lobe_counter(PathCounters& counters, uint lobe) {
+  if (lobe == BSDF_DIFFUSE) return counters.diffuse;
+  return lobe == BSDF_TRANSMISSION ? counters.transmitted : counters.reflected;
 }
 
 }  // namespace
@@ -47,6 +53,7 @@ void path_bounce(const PathBounceArgs& args) {
     const bool goes_through = dot_product(normal, next.light) < 0;
     if (goes_through != (next.flags == BSDF_TRANSMISSION)) continue;
     args.marks[i] = 1;
+    count_into(lobe_counter(args.counters[0], next.flags), 1);
     args.bounced_paths[i] = {
         throughput * weight, path.pixel, next.pdf, next.flags == BSDF_DIFFUSE ? PATH_SEES_AMBIENT : 0u,
         path.seed,           0};

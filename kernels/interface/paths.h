@@ -90,7 +90,14 @@ struct LightChoice {
 const uint LIGHT_CHOICE_LISTED = 0x80000000u;
 const uint LIGHT_CHOICE_RANGE = 0x1000000u;
 
+// Rays by which paths have gone on, by the lobe: 64-bit sums, low word first.
+struct PathCounters {
+  uvec2 diffuse, reflected, transmitted;
+  uint padding0, padding1;
+};
+
 INTERFACE_BUFFER(PathBuffer, Path, 16)
+INTERFACE_BUFFER(PathCountersBuffer, PathCounters, 8)
 INTERFACE_BUFFER(PathMaterialBuffer, PathMaterial, 16)
 INTERFACE_BUFFER(LightChoiceBuffer, LightChoice, 16)
 
@@ -182,9 +189,10 @@ struct PathBounceArgs {
   READS(HitBuffer) hits;
   READS(PathBuffer) paths;
   READS(SurfacePointBuffer) surfaces;
-  RayBuffer bounced_rays;    // out, of marked ones
-  PathBuffer bounced_paths;  // out, of marked ones
-  UintBuffer marks;          // out, one a ray
+  RayBuffer bounced_rays;       // out, of marked ones
+  PathBuffer bounced_paths;     // out, of marked ones
+  UintBuffer marks;             // out, one a ray
+  PathCountersBuffer counters;  // added to
   READS(UintBuffer) count_at;
   uint ray_count;
   uint sample_index;
