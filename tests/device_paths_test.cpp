@@ -125,7 +125,7 @@ TEST_F(DevicePaths, TheSameBitsThroughEveryTreeAndHoweverATraceIsCut) {
 TEST_F(DevicePaths, AFurnaceIsAsBrightAsItMustBeByEachStrategyAndBoth) {
   const Scene scene = furnace(0.5f, 0.25f);
   for (const char* const changes : {"", "-emission"}) {  // light samples and bounces, bounces alone
-    const Pictured lit = picture_of(scene, {.samples = 64, .changes = changes});
+    const Pictured lit = picture_of(scene, {.width = 64, .height = 48, .samples = 8, .changes = changes});
     const glm::dvec3 mean = mean_of(lit.radiance);
     for (int channel = 0; channel < 3; ++channel) EXPECT_NEAR(mean[channel], 0.5, 0.005) << changes;
   }
@@ -162,7 +162,7 @@ TEST_F(DevicePaths, ASlabOfGlassLetsThroughWhatFresnelSays) {
   for (const double tangent : {0.0, 1.0, 2.5}) {
     Scene scene = glass_slab(static_cast<float>(tangent));
     scene.bounces = 32;
-    const Pictured seen = picture_of(scene, {.width = 4, .height = 4, .samples = 1024});
+    const Pictured seen = picture_of(scene, {.width = 64, .height = 64, .samples = 4});
     const double reflectance = fresnel(1 / std::sqrt(1 + tangent * tangent), 1.5);
     EXPECT_NEAR(mean_of(seen.radiance).y, (1 - reflectance) / (1 + reflectance), 0.015) << tangent;
   }

@@ -64,10 +64,10 @@ Json to_json(const FrameReport& report, const Scene& scene, const FrameRuns& fra
                {"rays",
                 {{"primary", report.rays},
                  {"shadow", report.shadow.rays},
-                 {"reflection", 0},
-                 {"refraction", 0},
+                 {"reflection", report.lobes.reflected},
+                 {"refraction", report.lobes.transmitted},
                  {"occlusion", 0},
-                 {"diffuse", 0}}},
+                 {"diffuse", report.lobes.diffuse}}},
                {"mrays_per_s", mrays_per_s(report)},
                {"effects", names_of_effects(scene, effects_of(scene, frame.effects))},
                {"kernels", to_json(report.kernels)}};

@@ -12,16 +12,33 @@ namespace {
 
 using Kernel = RecordedPicture::Kernel;
 
-// Whether a step is there for this effect alone.
+uint lobe_of(Effect effect) {
+  if (effect == Effect::reflection) return PATH_LOBE_REFLECTS;
+  if (effect == Effect::refraction) return PATH_LOBE_TRANSMITS;
+  return effect == Effect::global_illumination ? PATH_LOBE_DIFFUSE : 0;
+}
+
+// That an effect has alone.
+std::uint64_t rays_of(const FrameReport& report, Effect effect) {
+  if (effect == Effect::reflection) return report.lobes.reflected;
+  if (effect == Effect::refraction) return report.lobes.transmitted;
+  if (effect == Effect::global_illumination) return report.lobes.diffuse;
+  return report.shadow.rays;
+}
+
+// Whether a step would not be there, or not as it is, without this effect.
 bool belongs_to(const Step& step, Effect effect) {
   if (effect == Effect::textures) return stage_of(step) == &stages::texture_hits;
+  if (const PathSurfacesArgs* const surfaces = args_of(step, stages::path_surfaces))
+    return effect == Effect::emission && surfaces->emitter_probability.value != 0;
+  if (const PathBounceArgs* const bounce = args_of(step, stages::path_bounce))
+    return (bounce->lobes & lobe_of(effect)) != 0;
   const ShadeLightsArgs* const shading = args_of(step, stages::shade_lights);
   if (shading) return (shading->marks.value != 0) == (effect == Effect::shadows);
   if (effect != Effect::shadows) return false;
   const StageDeclaration* const stage = stage_of(step);
-  const StageDeclaration* const own[] = {&stages::shadow_marks,   &stages::shadow_rays,
-                                         &stages::scan_tile_sums, &stages::prefix_scan,
-                                         &stages::trace_any,      &stages::trace_wide_any};
+  const StageDeclaration* const own[] = {&stages::shadow_marks, &stages::shadow_rays, &stages::path_light_add,
+                                         &stages::trace_any, &stages::trace_wide_any};
   return std::ranges::find(own, stage) != std::end(own);
 }
 
@@ -101,7 +118,8 @@ EffectsReport measure_effects(CheckedDevice& device, const Scene& scene, const F
   for (std::size_t i = 0; i < effect_count; ++i) {
     const Effect effect = static_cast<Effect>(i);
     EffectCost cost{.effect = effect, .state = effects.of(effect), .own_steps = all.effect_steps[i]};
-    if (effect == Effect::shadows) cost.rays = with.shadow.rays;  // counted, where it is off, too
+    if (effect == Effect::shadows || lobe_of(effect) != 0)
+      cost.rays = rays_of(with, effect);  // counted, where it is off, too
     if (cost.state.on) {
       FrameRuns other = frame;
       other.effects = frame.effects.but(effect, false);
@@ -110,7 +128,7 @@ EffectsReport measure_effects(CheckedDevice& device, const Scene& scene, const F
       cost.instead_of = less(rest.kernels, all.kernels);
       cost.bytes = static_cast<std::int64_t>(all.device_bytes) - static_cast<std::int64_t>(rest.device_bytes);
       const FrameReport without = measure_frame(device, scene, other);
-      cost.rays = with.shadow.rays - without.shadow.rays;
+      cost.rays = rays_of(with, effect) - std::min(rays_of(with, effect), rays_of(without, effect));
       cost.ms = ms_between(cost, with.kernels, without.kernels);
     }
     report.costs.push_back(std::move(cost));

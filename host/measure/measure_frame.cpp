@@ -267,6 +267,7 @@ FrameReport measure_frame(CheckedDevice& device, const Scene& scene, const Frame
   report.steps = counts.steps;
   report.shadow = {counts.shadow.rays, counts.shadow.hits, counts.shadow.steps};
   report.bounced = {counts.paths.rays, counts.paths.hits, counts.paths.steps};
+  report.lobes = counts.paths.lobes;
   read_picture(executor, plan, film, report);
   report.build.device_bytes = device_bytes(layout);
   if (plan.build) describe_device_build(device, executor, *plan.build, report.build);

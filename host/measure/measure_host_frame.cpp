@@ -177,6 +177,8 @@ FrameReport measure_host_frame(CheckedDevice* device, const Scene& scene, const 
                                                        {bvh.nodes, {}})));
   trace_on_host(executor, plan, bvh, arrays.triangles, frame.refine, film, report);
   report.image = executor.read(plan.trace.image);
+  if (plan.trace.paths.lobe_counters.count > 0)
+    report.lobes = counts_of(executor.read(plan.trace.paths.lobe_counters)[0]);
   if (plan.trace.options.keep_radiance)
     report.radiance = mean_radiance(executor.read(plan.trace.radiance), film.width, film.height, film.samples,
                                     executor.read(plan.trace.noise.sample_counts));

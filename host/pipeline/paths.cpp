@@ -139,6 +139,11 @@ class PathChain {
 
 }  // namespace
 
+LobeCounts counts_of(const PathCounters& counters) {
+  const auto wide = [](uvec2 words) { return std::uint64_t{words.y} << 32 | words.x; };
+  return {wide(counters.diffuse), wide(counters.reflected), wide(counters.transmitted)};
+}
+
 PathSlots plan_paths(Layout& layout, const PathCounts& counts, std::uint32_t triangle_count,
                      std::uint32_t material_count, std::uint32_t band_rays) {
   PathSlots slots;

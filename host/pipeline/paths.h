@@ -5,6 +5,7 @@
 #include "interface/paths.h"
 #include "pipeline/lights.h"
 #include "pipeline/textures.h"
+#include "stages/run_counts.h"
 
 namespace coppice {
 
@@ -41,6 +42,8 @@ struct PathSlots {
   Slot<TraceCounters> bounce_counters, light_counters;
   Slot<PathCounters> lobe_counters;
 };
+
+LobeCounts counts_of(const PathCounters& counters);
 
 // Throws LayoutError if a slot does not fit a block.
 PathSlots plan_paths(Layout& layout, const PathCounts& counts, std::uint32_t triangle_count,
