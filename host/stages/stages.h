@@ -123,11 +123,11 @@ inline constexpr NearlySlot nearly_shadow_rays[] = {{"shadow_rays", Nearly::rays
 inline constexpr NearlySlot nearly_materials[] = {{"hit_materials", Nearly::radiance}};
 inline constexpr NearlySlot nearly_radiance[] = {{"radiance", Nearly::radiance}};
 inline constexpr NearlySlot nearly_surfaces[] = {{"radiance", Nearly::radiance},
-                                                 {"surfaces", Nearly::radiance}};
+                                                 {"surfaces", Nearly::surfaces}};
 inline constexpr NearlySlot nearly_lights[] = {
     {"radiance", Nearly::radiance}, {"light_radiance", Nearly::radiance}, {"marked_rays", Nearly::rays}};
 inline constexpr NearlySlot nearly_marked[] = {{"marked_rays", Nearly::rays},
-                                               {"bounced_paths", Nearly::radiance}};
+                                               {"bounced_paths", Nearly::paths}};
 inline constexpr NearlySlot nearly_noise[] = {{"noise_sums", Nearly::noise}};
 inline constexpr NearlySlot nearly_marks[] = {{"noise_marks", Nearly::any_hits}};
 inline constexpr NearlySlot nearly_image[] = {{"image", Nearly::image}};
