@@ -135,6 +135,8 @@ inline Scene room_of_all_surfaces() {
   add_surface(scene, {-1.9f, 0.3f, 1}, {0, 2, 0}, {0.3f, 0, -2}, mirror);
   scene.more_lights.push_back(
       {.is_point = true, .place = {1, 2.5f, 1}, .radiance = vec3(0.3f), .shadows = true, .origin = "lamp"});
+  scene.more_lights.push_back(
+      {.is_point = true, .place = {-1, 2, 1}, .radiance = vec3(0.2f), .origin = "free"});
   scene.camera =
       Camera{.position = {0.2f, 1.4f, 1.8f}, .target = {-0.1f, 0.8f, -1}, .vertical_fov_degrees = 80};
   scene.global_illumination = true;
