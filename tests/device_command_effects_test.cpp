@@ -91,7 +91,7 @@ TEST_F(CommandEffects, ExplainNamesWhatCalledForEach) {
 
 TEST_F(CommandEffects, TheTableHasTheCostOfWhatIsOnAndZeroesForTheRest) {
   const json rich = report_of("effects scene.json")["effects"];
-  ASSERT_EQ(rich.size(), 5u);
+  ASSERT_EQ(rich.size(), 9u);
   EXPECT_EQ(rich[0]["name"], "lights");
   EXPECT_GT(rich[0]["rays"], 0) << "one of the points casts shadows";
   const json& shadows = rich[1];

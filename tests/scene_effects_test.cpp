@@ -6,6 +6,7 @@
 #include "measure/effects_report.h"
 #include "render/frame.h"
 #include "scene/effect_set.h"
+#include "scene/surface_effects.h"
 #include "support/scene_file_text.h"
 
 namespace coppice {
@@ -117,6 +118,85 @@ TEST(Effects, ChangesOverrideWhatTheSceneCallsFor) {
   EXPECT_TRUE(off.of(Effect::shadows).overridden);
 }
 
+Material named(const char* name) {
+  Material material;
+  material.name = name;
+  return material;
+}
+
+// A scene with a triangle of that material.
+Scene made_of(const Material& material) {
+  Scene scene = with_light();
+  scene.materials.push_back(material);
+  scene.material_index.back() = static_cast<std::uint32_t>(scene.materials.size() - 1);
+  return scene;
+}
+
+TEST(Effects, WhatEmitsReflectsOrLetsLightThroughCallsForPaths) {
+  Material lamp = named("lamp");
+  lamp.emission = {0, 1, 0};
+  EXPECT_EQ(caller(made_of(lamp), Effect::emission), "material 'lamp', which emits light");
+  EXPECT_EQ(caller(made_of(lamp), Effect::shadows), "material 'lamp', whose light casts them");
+  lamp.is_unlit = true;
+  EXPECT_EQ(caller(made_of(lamp), Effect::emission), "");
+  for (const int illum : {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}) {
+    Material surface = named("surface");
+    surface.illum = illum;
+    surface.opacity = 0.5f;
+    EXPECT_EQ(caller(made_of(surface), Effect::reflection), "") << illum;  // Ks is black
+    surface.specular = {0, 0, 0.5f};
+    const bool reflects = illum >= 3 && illum <= 7, refracts = illum == 4 || illum == 6 || illum == 7;
+    EXPECT_EQ(!caller(made_of(surface), Effect::reflection).empty(), reflects) << illum;
+    EXPECT_EQ(!caller(made_of(surface), Effect::refraction).empty(), refracts) << illum;
+    surface.opacity = 1;
+    EXPECT_EQ(transmission_of(surface), illum == 6 || illum == 7 ? 1 : 0) << illum;
+  }
+  Material metal = named("metal");
+  metal.metallic = 0.1f;
+  EXPECT_EQ(caller(made_of(metal), Effect::reflection), "material 'metal', which reflects");
+  metal.metallic_map.name = "map";  // paths do not read it
+  EXPECT_EQ(caller(made_of(metal), Effect::reflection), "");
+  Scene scene = with_light();
+  EXPECT_FALSE(effects_of(scene, EffectChanges("+reflection,+refraction,+emission")).follows_paths());
+  EXPECT_TRUE(effects_of(scene, EffectChanges("+global_illumination")).follows_paths());
+  scene.global_illumination = true;
+  EXPECT_EQ(caller(scene, Effect::global_illumination), "/global_illumination");
+}
+
+TEST(Effects, EmittersTakeThePlaceOfTheDefaultLight) {
+  Scene scene = make_built_in("grove");
+  scene.materials[scene.material_index[0]].emission = glm::vec3(1);
+  EXPECT_TRUE(path_lights(scene, effects_of(scene)).empty());
+  EXPECT_EQ(path_lights(scene, effects_of(scene, EffectChanges("-emission"))).size(), 1u);
+  scene.light_origin = "/light";
+  EXPECT_EQ(path_lights(scene, effects_of(scene)).size(), 1u);
+}
+
+TEST(Effects, LightsAreChosenInProportionToTheirPower) {
+  Scene scene;
+  scene.light.radiance = vec3(0);
+  scene.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}};
+  scene.indices = {{0, 1, 2}, {0, 3, 2}, {0, 0, 3}};  // the last one has no area
+  scene.material_index = {0, 1, 1};
+  scene.materials = {named("dim"), named("bright")};
+  scene.materials[0].emission = vec3(1);
+  scene.materials[1].emission = vec3(3);
+  scene.more_lights.push_back({.is_point = true, .origin = "lamp"});
+  const PathArrays paths = scene_arrays(scene, effects_of(scene)).paths;
+  ASSERT_EQ(paths.choices.size(), 3u);
+  uint before = 0;
+  for (const LightChoice& choice : paths.choices) {
+    EXPECT_EQ(choice.probability * LIGHT_CHOICE_RANGE, choice.end - before);
+    before = choice.end;
+  }
+  EXPECT_EQ(before, LIGHT_CHOICE_RANGE);
+  EXPECT_EQ(paths.choices[0].source, LIGHT_CHOICE_LISTED);
+  EXPECT_EQ(paths.choices[0].probability, 0.5f);
+  EXPECT_NEAR(paths.emitter_probability[0], 0.5 / 7, 1e-6);
+  EXPECT_NEAR(paths.emitter_probability[1], 3.0 / 7, 1e-6);
+  EXPECT_EQ(paths.emitter_probability[2], 0);
+}
+
 TEST(Effects, ChangesThatNobodyKnowsAreNamed) {
   const auto error_of = [](const char* text) -> std::string {
     try {
@@ -128,7 +208,7 @@ TEST(Effects, ChangesThatNobodyKnowsAreNamed) {
   };
   const std::string all =
       " is no + or - and an effect behind it: there are lights, shadows, textures, "
-      "depth_of_field, ambient_occlusion";
+      "depth_of_field, ambient_occlusion, emission, reflection, refraction, global_illumination";
   EXPECT_EQ(error_of("+fog"), "'+fog'" + all);
   EXPECT_EQ(error_of("shadows"), "'shadows'" + all);
   EXPECT_EQ(error_of("+"), "'+'" + all);

@@ -85,7 +85,7 @@ class AnimateCommand : public Command {
     app.add_option("--csv", files.csv, "every frame, comma-separated")->type_name("FILE");
     app.add_flag("--kernels", kernels_, "print the time of every kernel of one frame");
     add_picture(app, picture_, scene_.up);
-    add_effects(app, scene_.effects);
+    add_effects(app, scene_);
     add_lens(app, scene_);
     add_tone(app, picture_.trace.tone);
     add_tree(app, device_.choices.walk);

@@ -14,7 +14,7 @@ class EffectsCommand : public Command {
  public:
   void add_options(CLI::App& app) override {
     add_picture(app, picture_, scene_.up);
-    add_effects(app, scene_.effects);
+    add_effects(app, scene_);
     add_lens(app, scene_);
     add_tree(app, device_.choices.walk);
     add_runs(app, runs_, "make each picture so many times; the time of all of it is the median");

@@ -16,7 +16,7 @@ class LockstepCommand : public Command {
  public:
   void add_options(CLI::App& app) override {
     add_picture(app, picture_, scene_.up);
-    add_effects(app, scene_.effects);
+    add_effects(app, scene_);
     add_lens(app, scene_);
     add_tone(app, picture_.trace.tone);
     add_intersection(app, picture_.trace);

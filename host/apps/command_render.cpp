@@ -34,7 +34,7 @@ class RenderCommand : public Command {
     app.add_option("--tracer", tracer_)->check(CLI::IsMember({"gpu", "cpu"}))->capture_default_str();
     app.add_flag("--kernels", kernels_, "print the time of every kernel; takes the frame once more");
     add_picture(app, picture_, scene_.up);
-    add_effects(app, scene_.effects);
+    add_effects(app, scene_);
     add_lens(app, scene_);
     add_tone(app, picture_.trace.tone);
     app.add_flag("--explain", explain_, "say of each effect whether it is on, and what called for it");

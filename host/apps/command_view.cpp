@@ -31,7 +31,7 @@ class ViewCommand : public Command {
         ->type_name("PREFIX")
         ->capture_default_str();
     add_view(app, picture_, scene_.up);
-    add_effects(app, scene_.effects);
+    add_effects(app, scene_);
     add_lens(app, scene_);
     add_tone(app, picture_.trace.tone);
     add_show(app, run_.show);

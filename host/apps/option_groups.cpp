@@ -196,8 +196,8 @@ void add_refine(CLI::App& app, RefineLimits& refine) {
                "of --error: after 16 samples only of pixels whose own error is larger");
 }
 
-void add_effects(CLI::App& app, EffectChanges& effects) {
-  const auto set = [&effects](const std::string& given) {
+void add_effects(CLI::App& app, SceneOptions& scene) {
+  const auto set = [&effects = scene.effects](const std::string& given) {
     try {
       effects = EffectChanges(given);
     } catch (const InputError& error) {
@@ -207,6 +207,9 @@ void add_effects(CLI::App& app, EffectChanges& effects) {
   app.add_option_function<std::string>(
          "--effects", set, "effects that the picture has or has not, whatever the scene calls for")
       ->type_name("+E,-E,...");
+  app.add_option("--bounces", scene.bounces,
+                 "of paths of light, where the picture has any; default what the scene says, or 4")
+      ->check(CLI::Range(0u, MAX_BOUNCES));
 }
 
 void add_lens(CLI::App& app, SceneOptions& scene) {

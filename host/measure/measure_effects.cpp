@@ -17,27 +17,51 @@ using Kernel = RecordedPicture::Kernel;
 struct Sharing {
   Effect queue = Effect::shadows;        // whose rays the queue has then
   Effect plain_lights = Effect::lights;  // what shades those without shadows
+  bool paths = false;                    // which scan for themselves, too
 };
 
-// Whether a step is there, or has its kernel, for this effect alone.
+uint lobe_of(Effect effect) {
+  if (effect == Effect::reflection) return PATH_LOBE_REFLECTS;
+  if (effect == Effect::refraction) return PATH_LOBE_TRANSMITS;
+  return effect == Effect::global_illumination ? PATH_LOBE_DIFFUSE : 0;
+}
+
+// That an effect has alone.
+std::uint64_t rays_of(const FrameReport& report, Effect effect) {
+  if (effect == Effect::reflection) return report.lobes.reflected;
+  if (effect == Effect::refraction) return report.lobes.transmitted;
+  if (effect == Effect::global_illumination) return report.lobes.diffuse;
+  if (effect == Effect::ambient_occlusion) return report.occlusion.rays;
+  const bool lights = effect == Effect::lights || effect == Effect::shadows || effect == Effect::emission;
+  return lights ? report.shadow.rays : 0;
+}
+
+// Whether a step would not be there, or not as it is, without this effect.
 bool belongs_to(const Step& step, Effect effect, const Sharing& sharing) {
   if (effect == Effect::depth_of_field) {
     const CameraRaysArgs* const rays = args_of(step, stages::camera_rays);
     return rays && rays->has_lens != 0;
   }
   if (effect == Effect::textures) return stage_of(step) == &stages::texture_hits;
+  if (const PathSurfacesArgs* const surfaces = args_of(step, stages::path_surfaces))
+    return effect == Effect::emission && surfaces->emitter_probability.value != 0;
+  if (const PathBounceArgs* const bounce = args_of(step, stages::path_bounce))
+    return (bounce->lobes & lobe_of(effect)) != 0;
   const ShadeLightsArgs* const shading = args_of(step, stages::shade_lights);
   if (shading) return effect == (shading->marks.value != 0 ? Effect::shadows : sharing.plain_lights);
   const StageDeclaration* const stage = stage_of(step);
   const auto is_one_of = [&](std::initializer_list<const StageDeclaration*> own) {
     return std::ranges::find(own, stage) != own.end();
   };
-  if (effect == Effect::shadows && is_one_of({&stages::shadow_marks, &stages::shadow_rays})) return true;
+  if (effect == Effect::shadows &&
+      is_one_of({&stages::shadow_marks, &stages::shadow_rays, &stages::path_light_add}))
+    return true;
   if (effect == Effect::ambient_occlusion &&
       is_one_of({&stages::occlusion_marks, &stages::occlusion_rays, &stages::shade_ambient}))
     return true;
-  return effect == sharing.queue && is_one_of({&stages::scan_tile_sums, &stages::prefix_scan,
-                                               &stages::trace_any, &stages::trace_wide_any});
+  if (effect != sharing.queue) return false;
+  return is_one_of({&stages::trace_any, &stages::trace_wide_any}) ||
+         (!sharing.paths && is_one_of({&stages::scan_tile_sums, &stages::prefix_scan}));
 }
 
 void count_kernel(std::vector<Kernel>& kernels, const char* name) {
@@ -96,6 +120,7 @@ RecordedPicture recorded_picture(const SceneArrays& arrays, const FrameOptions& 
   recorded.device_bytes = device_bytes(layout);
   for (const SlotListing& slot : layout.slots()) recorded.slots.push_back(slot.name);
   Sharing sharing;
+  sharing.paths = plan.trace.options.paths.any();
   // The one light that else is part of the materials.
   const LightCounts& lights = plan.trace.options.lights;
   if (lights.occlusion && lights.lights == 1 && !lights.points)
@@ -127,8 +152,8 @@ EffectsReport measure_effects(CheckedDevice& device, const Scene& scene, const S
     const Effect effect = static_cast<Effect>(i);
     EffectCost cost{.effect = effect, .state = effects.of(effect), .own_steps = all.effect_steps[i]};
     // Counted, where they are off, too.
-    if (effect == Effect::shadows) cost.rays = with.shadow.rays;
-    if (effect == Effect::ambient_occlusion) cost.rays = with.occlusion.rays;
+    if (effect == Effect::shadows || effect == Effect::ambient_occlusion || lobe_of(effect) != 0)
+      cost.rays = rays_of(with, effect);
     if (cost.state.on) {
       FrameRuns other = frame;
       other.effects = frame.effects.but(effect, false);
@@ -138,9 +163,7 @@ EffectsReport measure_effects(CheckedDevice& device, const Scene& scene, const S
       cost.instead_of = less(rest.kernels, all.kernels);
       cost.bytes = static_cast<std::int64_t>(all.device_bytes) - static_cast<std::int64_t>(rest.device_bytes);
       const FrameReport without = measure_frame(device, scene, other_arrays, other);
-      // A lens sends rays elsewhere and adds none.
-      if (effect == Effect::lights || effect == Effect::shadows)
-        cost.rays = with.shadow.rays - without.shadow.rays;
+      cost.rays = rays_of(with, effect) - std::min(rays_of(with, effect), rays_of(without, effect));
       cost.ms = ms_between(cost, with.kernels, without.kernels);
     }
     report.costs.push_back(std::move(cost));

@@ -266,6 +266,8 @@ FrameReport measure_frame(CheckedDevice& device, const Scene& scene, const Scene
   report.steps = counts.steps;
   report.shadow = {counts.shadow.rays, counts.shadow.hits, counts.shadow.steps};
   report.occlusion = {counts.occlusion.rays, counts.occlusion.hits, counts.occlusion.steps};
+  report.bounced = {counts.paths.rays, counts.paths.hits, counts.paths.steps};
+  report.lobes = counts.paths.lobes;
   read_picture(executor, plan, film, report);
   report.build.device_bytes = device_bytes(layout);
   if (plan.build) describe_device_build(device, executor, *plan.build, report.build);

@@ -43,6 +43,8 @@ struct FrameReport {
   std::uint64_t rays = 0, hits = 0, steps = 0;  // of the camera's rays
   TraceCounts shadow;                           // of shadow rays
   TraceCounts occlusion;                        // of occlusion rays
+  TraceCounts bounced;                          // of paths behind those of the camera
+  LobeCounts lobes;                             // the same by the lobe of the surface
   std::string trace_device;                     // name and driver
   bool walks_wide = false;
   KernelTable kernels;         // of the trace, on a device; of a refined one of one more sample

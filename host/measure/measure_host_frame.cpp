@@ -27,11 +27,13 @@ std::uint64_t count_hits(std::span<const Hit> hits) {
 
 void trace_closest_on_host(const TraceClosestArgs& args, const Bvh& bvh, std::span<const Triangle> triangles,
                            FrameReport& report) {
-  const std::span<const Ray> rays(&args.rays[0], args.ray_count);
-  const std::span<Hit> hits(&args.hits[0], args.ray_count);
+  const bool bounced = args.count_at.value != 0;
+  const std::uint32_t count = bounced ? args.count_at[0] : args.ray_count;
+  const std::span<const Ray> rays(&args.rays[0], count);
+  const std::span<Hit> hits(&args.hits[0], count);
   trace_all(bvh.nodes, triangles, rays, hits);
-  report.rays += rays.size();
-  report.hits += count_hits(hits);
+  (bounced ? report.bounced.rays : report.rays) += rays.size();
+  (bounced ? report.bounced.hits : report.hits) += count_hits(hits);
 }
 
 // Of shadow or occlusion rays: whether there is a closest hit.
@@ -178,6 +180,8 @@ FrameReport measure_host_frame(CheckedDevice* device, const Scene& scene, const 
                                                        {bvh.nodes, {}})));
   trace_on_host(executor, plan, bvh, arrays.triangles, frame.refine, film, report);
   report.image = executor.read(plan.trace.image);
+  if (plan.trace.paths.lobe_counters.count > 0)
+    report.lobes = counts_of(executor.read(plan.trace.paths.lobe_counters)[0]);
   if (plan.trace.options.keep_radiance)
     report.radiance = mean_radiance(executor.read(plan.trace.radiance), film.width, film.height, film.samples,
                                     executor.read(plan.trace.noise.sample_counts));

@@ -20,6 +20,14 @@ RunCounts counts_of_picture(const GpuExecutor& executor, const TracePlan& plan) 
   };
   counts.shadow = secondary(plan.lights.counters, plan.options.lights.shadows);
   counts.occlusion = secondary(plan.lights.occlusion_counters, 1);
+  if (plan.options.paths.any() && plan.options.show == SHOW_COLOR) {
+    const TraceCounts bounced = counts_of(executor.read(plan.paths.bounce_counters)[0]);
+    const TraceCounts lit = counts_of(executor.read(plan.paths.light_counters)[0]);
+    const std::uint64_t bounces = plan.options.paths.bounces;
+    counts.paths = {counts.rays * bounces, bounced.rays, bounced.hits, bounced.steps,
+                    counts_of(executor.read(plan.paths.lobe_counters)[0])};
+    counts.shadow = {counts.rays * (bounces + 1), lit.rays, lit.hits, lit.steps};
+  }
   return counts;
 }
 

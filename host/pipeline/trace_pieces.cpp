@@ -119,16 +119,18 @@ TracePieces::Surfaces TracePieces::textured_surfaces(const Chain& chain) const {
   return result;
 }
 
-void TracePieces::append_textures(Chain& chain) const {
+void TracePieces::append_hit_textures(Chain& chain) const {
   if (plan_.options.textures.textures == 0) return;
-  const TextureSlots& slots = plan_.textures;
   const auto [triangles, material_index, materials] = surfaces(chain);
-  chain.run(stages::texture_hits,
-            {chain.at(plan_.film), triangles, material_index, chain.at(slots.materials), chain.at(slots.maps),
-             chain.at(slots.headers), chain.at(slots.texels), chain.at(slots.srgb_to_linear),
-             chain.at(slots.corners), chain.at(plan_.rays, range_.first), chain.at(plan_.hits, range_.first),
-             chain.at(slots.hit_materials, range_.first), range_.count, 0},
-            groups_of(range_.count, TEXTURE_HITS_GROUP));
+  append_textures(chain, plan_.textures,
+                  {chain.at(plan_.film),
+                   triangles,
+                   material_index,
+                   chain.at(plan_.rays, range_.first),
+                   chain.at(plan_.hits, range_.first),
+                   chain.at(plan_.textures.hit_materials, range_.first),
+                   {},
+                   range_.count});
 }
 
 void TracePieces::append_shade(Chain& chain, Vec3Buffer radiance) const {
@@ -149,6 +151,16 @@ void TracePieces::append_all_lights(Chain& chain, Vec3Buffer radiance) const {
                  address_or_null(chain, plan_.traced_pixels, band_first_ + range_.first),
                  band_first_ + range_.first, sample_},
                 plan_.options);
+}
+
+void TracePieces::append_paths_of(Chain& chain, Vec3Buffer radiance) const {
+  const auto [triangles, material_index, materials] = surfaces(chain);
+  append_paths(chain, tree_, plan_.paths, plan_.textures,
+               {chain.at(plan_.film), triangles, material_index, chain.at(plan_.rays, range_.first),
+                chain.at(plan_.hits, range_.first), radiance, chain.at(plan_.lighting),
+                address_or_null(chain, plan_.traced_pixels, band_first_ + range_.first),
+                band_first_ + range_.first, range_.count, summed_samples(), sample_},
+               plan_.options);
 }
 
 void TracePieces::append_show(Chain& chain, Vec3Buffer radiance) const {
@@ -182,9 +194,13 @@ void TracePieces::append_radiance(Chain& chain) const {
   if (options.show != SHOW_COLOR) {
     append_show(chain, radiance);
   } else {
-    append_textures(chain);
-    append_shade(chain, radiance);
-    append_all_lights(chain, radiance);
+    if (options.paths.any()) {
+      append_paths_of(chain, radiance);
+    } else {
+      append_hit_textures(chain);
+      append_shade(chain, radiance);
+      append_all_lights(chain, radiance);
+    }
   }
   if (options.keep_noise)
     append_sample(chain, plan_.noise, plan_.radiance,
@@ -212,6 +228,9 @@ std::uint64_t TracePieces::append(Chain& chain, std::uint64_t work) {
   if (!cleared_) chain.clear(plan_.show.range);
   if (!cleared_) chain.clear(plan_.lights.counters);
   if (!cleared_) chain.clear(plan_.lights.occlusion_counters);
+  if (!cleared_) chain.clear(plan_.paths.bounce_counters);
+  if (!cleared_) chain.clear(plan_.paths.light_counters);
+  if (!cleared_) chain.clear(plan_.paths.lobe_counters);
   cleared_ = true;
   std::uint64_t appended = 0;
   while (!done() && has_room(tree_, plan_.options, appended, work)) {

@@ -93,7 +93,7 @@ float ToneMapping::exposure() const { return static_cast<float>(std::exp2(stops)
 
 bool keeps_radiance(const TraceOptions& options) {
   return options.samples > 1 || options.show != SHOW_COLOR || options.lights.any() ||
-         options.textures.textures > 0 || options.lens || options.tone.changes() ||
+         options.textures.textures > 0 || options.lens || options.paths.any() || options.tone.changes() ||
          keeps_whole_radiance(options);
 }
 
@@ -194,6 +194,7 @@ TracePlan plan_trace(Layout& layout, const TreeSlots& tree, std::uint32_t materi
     plan.lights = plan_lights(layout, options.lights, plan.band_rays);
     plan.textures =
         plan_textures(layout, options.textures, tree.triangle_count, material_count, plan.band_rays);
+    plan.paths = plan_paths(layout, options.paths, tree.triangle_count, material_count, plan.band_rays);
   }
   if (options.show != SHOW_COLOR) plan.show = plan_show(layout, tree, options.show);
   if (options.show == SHOW_STEPS) plan.ray_steps = layout.add<uint>("ray_steps", plan.band_rays);

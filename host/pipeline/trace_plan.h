@@ -6,6 +6,7 @@
 #include "interface/show.h"
 #include "pipeline/build_plan.h"
 #include "pipeline/lights.h"
+#include "pipeline/paths.h"
 #include "pipeline/ray_filter.h"
 #include "pipeline/refine.h"
 #include "pipeline/textures.h"
@@ -40,6 +41,7 @@ struct TraceOptions {
   LightCounts lights{};             // of colours
   TextureCounts textures{};         // of colours
   bool lens = false;                // of colours: rays go through that of the film
+  PathCounts paths{};               // of colours
   std::uint32_t show = SHOW_COLOR;  // SHOW_; brute force has no steps
   bool keep_hits = false;           // the rays of the last sample and their hits are asked for
   ToneMapping tone{};               // of colours
@@ -110,6 +112,7 @@ struct TracePlan : RaySlots {
   Slot<uint> traced_pixels;  // only these of the picture, by their places; empty: all
   LightSlots lights;
   TextureSlots textures;
+  PathSlots paths;
   ShowSlots show;
 };
 

@@ -50,6 +50,9 @@ FramePlan plan_frame(Layout& layout, const SceneArrays& scene, const FrameOption
   if ((options.trace.lights.shadows > 0 || options.trace.lights.occlusion) &&
       options.trace.walk == Walk::brute_force)
     throw std::invalid_argument("shadows and occlusion are traced through a tree");
+  options.trace.paths = colours ? scene.paths.counts : PathCounts{};
+  if (options.trace.paths.any() && options.trace.walk == Walk::brute_force)
+    throw std::invalid_argument("paths are traced through a tree");
   if (!scene.mesh_index.empty()) return plan_instanced_frame(layout, scene, options);
   FramePlan plan;
   if (options.build) plan.build = plan_build(layout, scene.triangle_count(), *options.build);

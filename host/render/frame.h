@@ -57,6 +57,16 @@ void upload_textures(Executor& executor, const TextureSlots& slots, const SceneA
   executor.upload(slots.corners, std::span<const CornerAttributes>(scene.corners));
 }
 
+template <class Executor>
+void upload_paths(Executor& executor, const PathSlots& slots, const PathArrays& paths) {
+  executor.upload(slots.materials, std::span<const SurfaceMaterial>(paths.materials));
+  executor.upload(slots.path_materials, std::span<const PathMaterial>(paths.path_materials));
+  executor.upload(slots.ambient, std::span<const vec3>(&paths.ambient, 1));
+  executor.upload(slots.lights, std::span<const LightSource>(paths.lights));
+  executor.upload(slots.choices, std::span<const LightChoice>(paths.choices));
+  executor.upload(slots.emitter_probability, std::span<const float>(paths.emitter_probability));
+}
+
 // Uploads all that a build and a trace read, through any executor.
 template <class Executor>
 void upload_frame(Executor& executor, const TreeSlots& tree, const TracePlan& trace, const SceneArrays& scene,
@@ -73,6 +83,7 @@ void upload_frame(Executor& executor, const TreeSlots& tree, const TracePlan& tr
   if (trace.lights.ambient.count > 0)
     executor.upload(trace.lights.ambient, std::span<const AmbientLight>(&scene.ambient, 1));
   if (trace.textures.headers.count > 0) upload_textures(executor, trace.textures, scene);
+  if (trace.options.paths.any()) upload_paths(executor, trace.paths, scene.paths);
 }
 
 // The same of a frame with or without instances.

@@ -13,20 +13,6 @@ namespace coppice {
 
 namespace {
 
-vec3 flush_to_zero(vec3 v) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (std::fpclassify(v[axis]) == FP_SUBNORMAL || v[axis] == 0) v[axis] = 0;
-  }
-  return v;
-}
-
-// What is compared with 0 on the device has no denormals, and places no infinities.
-LightSource light_source(const Light& light) {
-  constexpr float farthest = 0x1p100f;
-  return {glm::clamp(light.place, -farthest, farthest), light.is_point ? LIGHT_POINT : LIGHT_DIRECTIONAL,
-          flush_to_zero(light.radiance), std::min(light.distance, farthest)};
-}
-
 AmbientLight ambient_light(const Scene& scene, std::span<const Triangle> triangles) {
   double distance = scene.occlusion ? scene.occlusion->distance : 0;
   if (distance == 0) {
@@ -39,7 +25,9 @@ AmbientLight ambient_light(const Scene& scene, std::span<const Triangle> triangl
 
 // The light is part of the materials, or shading goes over a list of lights, which materials only reflect.
 void add_lights(SceneArrays& arrays, const Scene& scene, const EffectSet& effects) {
-  for (const Light& light : shaded_lights(scene, effects)) {
+  const std::vector<Light> lights =
+      arrays.paths.counts.any() ? std::vector<Light>() : shaded_lights(scene, effects);
+  for (const Light& light : lights) {
     arrays.lights.push_back(light_source(light));
     ++arrays.light_counts.lights;
     arrays.light_counts.shadows += light.shadows;
@@ -66,8 +54,12 @@ void add_textures(SceneArrays& arrays, const Scene& scene) {
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     const Material& material = scene.materials[i];
     arrays.textured_materials.push_back(
-        {material.emission, arrays.light_counts.occlusion ? vec3(0) : material.diffuse * scene.ambient_light,
-         arrays.materials[i].diffuse});
+        arrays.paths.counts.any()
+            ? TexturedMaterial{arrays.paths.materials[i].ambient, vec3(0), arrays.paths.materials[i].diffuse}
+            : TexturedMaterial{
+                  material.emission,
+                  arrays.light_counts.occlusion ? vec3(0) : material.diffuse * scene.ambient_light,
+                  arrays.materials[i].diffuse});
   }
 }
 
@@ -87,6 +79,7 @@ SceneArrays scene_arrays(const Scene& scene, const EffectSet& effects) {
     arrays.triangles.push_back({positions[corner.x], positions[corner.y], positions[corner.z]});
   }
   arrays.material_index = scene.material_index;
+  if (scene.instances.empty()) arrays.paths = path_arrays(scene, effects, arrays.triangles);
   add_lights(arrays, scene, effects);
   arrays.lens = effects.has(Effect::depth_of_field) && scene.lens.aperture > 0;
   if (effects.has(Effect::textures)) add_textures(arrays, scene);

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "interface/instances.h"
-#include "pipeline/lights.h"
 #include "pipeline/textures.h"
+#include "render/path_arrays.h"
 #include "render/texture_arrays.h"
 #include "scene/effect_set.h"
 
@@ -21,6 +21,7 @@ struct SceneArrays {
   LightCounts light_counts;
   AmbientLight ambient = {};  // where it is occluded, and not part of the materials
   bool lens = false;          // depth of field is asked for, and the scene has an aperture
+  PathArrays paths;           // that shading is left to, if there are any
   // Where textures are asked for, and there are some:
   TextureArrays textures;
   std::vector<TexturedMaterial> textured_materials;

@@ -25,7 +25,9 @@ struct Material {
   float shininess = 1.0f;            // Ns, the Phong exponent
   float opacity = 1.0f;              // d, or 1 - Tr; 0 is invisible, 1 is solid
   float index_of_refraction = 1.0f;  // Ni
+  glm::vec3 filter{1.0f};            // Tf, of what goes through
   int illum = 1;                     // illumination model, 0 to 10
+  bool is_unlit = false;             // emission is its colour, and lights nothing
   std::optional<float> roughness{};  // Pr, from 0 to 1
   std::optional<float> metallic{};   // Pm, from 0 to 1
   // Maps (scene/material_maps.h). Each multiplies what it is a map of; the last two of a material without
@@ -145,6 +147,8 @@ struct Scene {
   std::vector<Light> more_lights;             // at most MAX_LIGHTS - 1
   glm::vec3 ambient_light{0.35f};             // linear RGB, multiplies Material::diffuse
   std::optional<AmbientOcclusion> occlusion;  // none: it reaches everything
+  bool global_illumination = false;           // whether light goes on from diffuse surfaces
+  std::uint32_t bounces = 4;                  // of paths at most, beside the camera's rays
   // Null: nothing moves but a swarm. With instances it has no vertices: these are in InstancedMesh::motion.
   std::shared_ptr<const Motion> motion;
   std::vector<std::string> warnings;  // one line each, what was odd about the input but not fatal

@@ -34,6 +34,9 @@ Material scene_file_material(const std::string& name, const json& from) {
   material.opacity = from.value("opacity", material.opacity);
   material.index_of_refraction = from.value("index_of_refraction", material.index_of_refraction);
   material.illum = from.value("illum", material.illum);
+  if (from.contains("filter")) material.filter = vector_of(from["filter"]);
+  if (from.contains("roughness")) material.roughness = from["roughness"].get<float>();
+  if (from.contains("metallic")) material.metallic = from["metallic"].get<float>();
   return material;
 }
 

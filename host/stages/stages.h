@@ -9,6 +9,7 @@
 #include "interface/lights.h"
 #include "interface/morton.h"
 #include "interface/occlusion.h"
+#include "interface/paths.h"
 #include "interface/ploc.h"
 #include "interface/refine.h"
 #include "interface/refit.h"
@@ -85,6 +86,12 @@
   STAGE(occlusion_marks, OcclusionMarksArgs, NoConstants, exactly)                     \
   STAGE(occlusion_rays, OcclusionRaysArgs, NoConstants, nearly_shadow_rays)            \
   STAGE(shade_ambient, ShadeAmbientArgs, NoConstants, exactly)                         \
+  STAGE(path_start, PathStartArgs, NoConstants, exactly)                               \
+  STAGE(path_surfaces, PathSurfacesArgs, PathSurfacesConstants, nearly_surfaces)       \
+  STAGE(path_lights, PathLightsArgs, PathBsdfConstants, nearly_lights)                 \
+  STAGE(path_light_add, PathLightAddArgs, NoConstants, exactly)                        \
+  STAGE(path_bounce, PathBounceArgs, PathBsdfConstants, nearly_marked)                 \
+  STAGE(path_queue, PathQueueArgs, NoConstants, exactly)                               \
   STAGE(show, ShowArgs, ShowConstants, nearly_radiance)                                \
   STAGE(shade_pixels, ShadePixelsArgs, ShadeConstants, nearly_image)                   \
   STAGE(trace_pixels, TracePixelsArgs, TracePixelsConstants, nearly_pixels)            \
@@ -121,6 +128,12 @@ inline constexpr NearlySlot nearly_bounced[] = {{"bounced_rays", Nearly::rays}};
 inline constexpr NearlySlot nearly_shadow_rays[] = {{"shadow_rays", Nearly::rays}};
 inline constexpr NearlySlot nearly_materials[] = {{"hit_materials", Nearly::radiance}};
 inline constexpr NearlySlot nearly_radiance[] = {{"radiance", Nearly::radiance}};
+inline constexpr NearlySlot nearly_surfaces[] = {{"radiance", Nearly::radiance},
+                                                 {"surfaces", Nearly::surfaces}};
+inline constexpr NearlySlot nearly_lights[] = {
+    {"radiance", Nearly::radiance}, {"light_radiance", Nearly::radiance}, {"marked_rays", Nearly::rays}};
+inline constexpr NearlySlot nearly_marked[] = {{"marked_rays", Nearly::rays},
+                                               {"bounced_paths", Nearly::paths}};
 inline constexpr NearlySlot nearly_noise[] = {{"noise_sums", Nearly::noise}};
 inline constexpr NearlySlot nearly_marks[] = {{"noise_marks", Nearly::any_hits}};
 inline constexpr NearlySlot nearly_image[] = {{"image", Nearly::image}};

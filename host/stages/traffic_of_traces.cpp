@@ -18,9 +18,20 @@ Bytes share(Bytes sum, Bytes rays, const RunCounts& counts) {
                             static_cast<double>(counts.rays));
 }
 
+// Of rays by which paths go on, those of `rays` rays of the picture at one bounce; `visited` is what the
+// camera's rays visit.
+Bytes bounced_bytes(Bytes rays, Bytes per_ray, Bytes visited, const RunCounts& counts) {
+  const double part = static_cast<double>(rays) / static_cast<double>(counts.paths.could_be);
+  const double a_step = static_cast<double>(visited) / static_cast<double>(std::max<Bytes>(counts.steps, 1));
+  return static_cast<Bytes>(part * (static_cast<double>(counts.paths.rays) * static_cast<double>(per_ray) +
+                                    static_cast<double>(counts.paths.steps) * a_step));
+}
+
 // Of a walk that visits so much over the whole trace.
 template <class Args>
 Bytes walk_bytes(const Args& args, Bytes per_ray, Bytes visited, const RunCounts& counts) {
+  if (args.count_at.value && counts.paths.could_be)
+    return bounced_bytes(args.ray_count, per_ray, visited, counts);
   const Bytes rays = args.count_at.value ? std::min<Bytes>(args.ray_count, counts.rays) : args.ray_count;
   return rays * per_ray + share(visited, rays, counts);
 }

@@ -18,7 +18,7 @@ INTERFACE_BUFFER(AmbientLightBuffer, AmbientLight, 16)
 
 // Which hits need a ray: those whose surface reflects some of the light.
 struct OcclusionMarksArgs {
-  READS(UintBuffer) material_index;  // as in ShadeArgs
+  READS(UintBuffer) material_index;        // as in ShadeArgs
   READS(SurfaceMaterialBuffer) materials;  // diffuse: the colour alone
   READS(AmbientLightBuffer) ambient;       // one
   READS(HitBuffer) hits;                   // ray_count

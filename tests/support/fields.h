@@ -18,8 +18,8 @@ constexpr bool takes_fields(std::index_sequence<I...>) {
   return requires { T{((void)I, AnyField{})...}; };
 }
 
-// Number of members of an aggregate of at most 16.
-template <class T, std::size_t N = 16>
+// Number of members of an aggregate of at most 20.
+template <class T, std::size_t N = 20>
 constexpr std::size_t field_count() {
   if constexpr (takes_fields<T>(std::make_index_sequence<N>{})) {
     return N;
@@ -64,6 +64,10 @@ std::vector<std::uint32_t> field_offsets() {
   COPPICE_TIE(14, a, b, c, d, e, f, g, h, i, j, k, l, m, n)
   COPPICE_TIE(15, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o)
   COPPICE_TIE(16, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p)
+  COPPICE_TIE(17, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q)
+  COPPICE_TIE(18, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r)
+  COPPICE_TIE(19, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s)
+  COPPICE_TIE(20, a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p, q, r, s, t)
   return {};
 }
 #undef COPPICE_TIE

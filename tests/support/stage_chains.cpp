@@ -17,6 +17,7 @@
 #include "stages/stages.h"
 #include "support/instances.h"
 #include "support/moving_scenes.h"
+#include "support/path_scene.h"
 #include "support/textured_scene.h"
 
 namespace coppice {
@@ -34,6 +35,7 @@ struct Frame {
   bool lights = false;   // two, which cast shadows
   bool refines = false;  // as a picture whose error is estimated
   bool textures = false;
+  bool paths = false;  // of all lobes
 };
 constexpr Frame frames[] = {
     {1000, DeviceBuilder::ploc, true, Walk::binary},
@@ -46,12 +48,14 @@ constexpr Frame frames[] = {
     {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 1, true, true},
     {300, DeviceBuilder::ploc, true, Walk::wide_single, SHOW_COLOR, 1, true, true},
     {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 2, true, false, true},
-    {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 1, true, false, false, true}};
+    {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 1, true, false, false, true},
+    {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 1, true, false, false, false, true}};
 constexpr std::size_t scan_and_copy = std::size(frames), inputs = scan_and_copy + 1, vertices = inputs + 1,
                       refits = vertices + 1, instances = refits + 1, chain_count = instances + 1;
 
 Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
   Scene scene = frame.lights     ? triangles_over_plane(frame.triangles)
+                : frame.paths    ? room_of_all_surfaces()
                 : frame.textures ? textured_scene(frame.triangles)
                                  : find_hard_case("nested")->make(frame.triangles, 1);
   if (frame.lights) {
@@ -78,6 +82,7 @@ Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
   trace_options.lights = arrays.light_counts;
   trace_options.textures = arrays.texture_counts();
   trace_options.lens = arrays.lens;
+  trace_options.paths = arrays.paths.counts;
   std::optional<WidePlan> wide;
   if (is_wide(frame.walk)) wide = plan_wide(layout, build, &build);
   const TracePlan trace =
