@@ -86,6 +86,34 @@ TEST_F(ViewWindow, AnotherSceneIsTypedAndABadOneIsNamed) {
 }
 
 // What is asked for meanwhile is there once it is seen again.
+// Each goes down and up within a frame.
+TEST_F(ViewWindow, NoKeyIsLostWhileFramesAreSlow) {
+  OPEN_OR_SKIP("moving:20000 --size 480x320 --rebuild --paused --builder gpu-ploc");
+  const auto cameras = [&] {
+    std::vector<std::string> lines;
+    std::istringstream out(window_->out());
+    for (std::string line; std::getline(out, line);) {
+      if (line.starts_with("render ")) lines.push_back(line);
+    }
+    return lines;
+  };
+  key("c");
+  EXPECT_TRUE(wait_until([&] { return cameras().size() == 1; }));
+  key("w");
+  key("c");
+  EXPECT_TRUE(wait_until([&] { return cameras().size() == 2; }));
+  EXPECT_NE(cameras().front(), cameras().back()) << "it does not fly";
+  EXPECT_TRUE(wait_until([&] {
+    desktop_->xdotool("mousemove 400 300 click 1 sleep 1 mousemove 100 30 click 1 sleep 1");
+    desktop_->xdotool("type --delay 1 scatter:70012");
+    // GLFW takes two strokes of a key within a millisecond for one.
+    desktop_->xdotool("key --delay 4 BackSpace BackSpace Return");
+    return wait_until([&] { return shows("scene scatter:"); }, std::chrono::seconds(20));
+  }));
+  expect_line("scene scatter:700: 700 triangles");
+  close();
+}
+
 TEST_F(ViewWindow, IsMinimisedAndShownAgain) {
   OPEN_OR_SKIP("moving:500 --size 200x150 --pictures picture");
   const std::string id = id_of_window();

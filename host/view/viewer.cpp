@@ -92,7 +92,7 @@ bool Viewer::is_hidden() const {
 // Until something happens, where nothing goes on by itself.
 void Viewer::wait_for_events() {
   const bool moves = frames_ && ((plays_ && frames_->can_move()) || asked_.rebuild || asked_.draws_always);
-  const bool still = frames_ && !moves && !picture_old_;
+  const bool still = frames_ && !moves && !picture_old_ && !typed_keys_.any_left();
   if (is_hidden()) {
     glfwWaitEventsTimeout(0.1);
   } else if (still || !frames_) {
@@ -142,8 +142,10 @@ void Viewer::turn() {
   answer_requests();
 }
 
+  typed_keys_.begin_frame();
 // With the panes over it.
 bool Viewer::show_picture() {
+  typed_keys_.end_frame(window_.handle());
   screen_->begin();
   panes();
   take_picture();
