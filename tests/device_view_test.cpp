@@ -1,5 +1,6 @@
 // The window, on a display of its own and driven by real events: what it shows is what `render` makes, and it
 // stands whatever is done to it. Under the validation layers, of which a message ends it with status 1.
+#include <csignal>
 #include <nlohmann/json.hpp>
 
 #include "support/view_window.h"
@@ -85,7 +86,6 @@ TEST_F(ViewWindow, AnotherSceneIsTypedAndABadOneIsNamed) {
   EXPECT_EQ(std::ranges::count(without_notes(window_->err()), '\n'), 1) << window_->err();
 }
 
-// What is asked for meanwhile is there once it is seen again.
 // Each goes down and up within a frame.
 TEST_F(ViewWindow, NoKeyIsLostWhileFramesAreSlow) {
   OPEN_OR_SKIP("moving:20000 --size 480x320 --rebuild --paused --builder gpu-ploc");
@@ -114,6 +114,7 @@ TEST_F(ViewWindow, NoKeyIsLostWhileFramesAreSlow) {
   close();
 }
 
+// What is asked for meanwhile is there once it is seen again.
 TEST_F(ViewWindow, IsMinimisedAndShownAgain) {
   OPEN_OR_SKIP("moving:500 --size 200x150 --pictures picture");
   const std::string id = id_of_window();
@@ -144,6 +145,16 @@ TEST_F(ViewWindow, IsClosedWhileASceneIsOpenedAndBuilt) {
   desktop_->xdotool("windowfocus " + id);
   key("Escape");
   EXPECT_EQ(window_->wait(), 0) << window_->err();
+}
+
+TEST_F(ViewWindow, IsInterruptedWhileASceneIsOpenedAndBuilt) {
+  ASSERT_TRUE(open("scatter:400000 --builder gd16 --size 200x150", false));
+  wait_until([&] { return !id_of_window().empty() || window_->has_ended(); });
+  if (window_->has_ended() && window_->err().find("cannot present") != std::string::npos)
+    CANNOT_OPEN("the driver cannot present");
+  window_->send(SIGINT);
+  EXPECT_EQ(window_->wait(), 128 + SIGINT);
+  EXPECT_EQ(without_notes(window_->err()), "coppice: interrupted\n");
 }
 
 TEST_F(ViewWindow, FramesOfAMovingSceneAreThoseOfAnimateHoweverItsTreesAreMade) {

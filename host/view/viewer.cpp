@@ -103,7 +103,6 @@ void Viewer::wait_for_events() {
 }
 
 ViewReport Viewer::run() {
-  const InterruptionGuard guard;
   check_device();
   start_scene();
   last_turn_ = ViewClock::now();
