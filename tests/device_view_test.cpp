@@ -157,6 +157,18 @@ TEST_F(ViewWindow, IsInterruptedWhileASceneIsOpenedAndBuilt) {
   EXPECT_EQ(without_notes(window_->err()), "coppice: interrupted\n");
 }
 
+TEST_F(ViewWindow, WarnsOnceOfATextureThatIsMissing) {
+  write("wall.mtl", "newmtl wall\nKd 1 1 1\nmap_Kd gone.png\n");
+  write("wall.obj",
+        "mtllib wall.mtl\nusemtl wall\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0.5 1\n"
+        "f 1/1 2/2 3/3\n");
+  OPEN_OR_SKIP("wall.obj --size 64x48 --rebuild");
+  key("Escape");
+  EXPECT_EQ(window_->wait(), 0) << window_->err();
+  EXPECT_EQ(without_notes(window_->err()),
+            "warning: gone.png: no such file, a checker takes its place as map_Kd of material 'wall'\n");
+}
+
 TEST_F(ViewWindow, FramesOfAMovingSceneAreThoseOfAnimateHoweverItsTreesAreMade) {
   const Outcome animated = run("animate moving:2000 --size 160x120 --frames 4 --json animate.json");
   ASSERT_EQ(animated.status, 0) << animated.err;

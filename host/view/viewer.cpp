@@ -11,7 +11,6 @@
 #include "pipeline/interruption.h"
 #include "pipeline/verdicts.h"
 #include "scene/input_error.h"
-#include "scene/printable.h"
 
 namespace coppice {
 
@@ -141,12 +140,12 @@ void Viewer::turn() {
   answer_requests();
 }
 
-  typed_keys_.begin_frame();
 // With the panes over it.
 bool Viewer::show_picture() {
-  typed_keys_.end_frame(window_.handle());
+  typed_keys_.begin_frame();
   screen_->begin();
   panes();
+  typed_keys_.end_frame(window_.handle());
   take_picture();
   PicturePlace picture;
   if (frames_) picture = {frames_->image_buffer(), frames_->image().place.offset, width_, height_};
@@ -183,9 +182,9 @@ void Viewer::take_scene() {
   refused_ = {};
   opened_ = std::move(result.opened);
   complaint_.clear();
-  for (const std::string& warning : opened_->scene.warnings)
-    std::fprintf(stderr, "warning: %s\n", printable(std::string_view(warning)).c_str());
   if (!is_new) return;
+  for (const std::string& warning : opened_->scene.warnings)
+    std::fprintf(stderr, "warning: %s\n", warning.c_str());
   if (presented_ > 0) camera_numbers_.clear();
   camera_.reset();
   seconds_ = 0;
