@@ -69,7 +69,6 @@ struct SceneOptions {
   EffectChanges effects{};  // beside what it calls for
   // Of the lens, in the file's unit, in the place of what the scene says.
   std::optional<double> aperture{}, focus{};
-  EffectChanges effects{};                 // beside what it calls for
   std::optional<std::uint32_t> bounces{};  // of paths at most; none: the scene's own
 };
 

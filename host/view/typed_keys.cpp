@@ -1,6 +1,6 @@
 #include "view/typed_keys.h"
 
-#define GLFW_INCLUDE_NONE
+#define GLFW_INCLUDE_VULKAN
 #include <GLFW/glfw3.h>
 #include <imgui.h>
 #include <imgui_internal.h>

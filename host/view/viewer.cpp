@@ -1,4 +1,4 @@
-#define GLFW_INCLUDE_NONE
+#define GLFW_INCLUDE_VULKAN
 #include "view/viewer.h"
 
 #include <GLFW/glfw3.h>

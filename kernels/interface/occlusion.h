@@ -1,7 +1,7 @@
 // Ambient light, and what stands in its way.
 #ifndef COPPICE_INTERFACE_OCCLUSION_H
 #define COPPICE_INTERFACE_OCCLUSION_H
-#include "trace.h"
+#include "shade.h"
 INTERFACE_BEGIN
 
 const uint OCCLUSION_MARKS_GROUP = 64;
