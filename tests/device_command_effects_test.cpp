@@ -75,14 +75,15 @@ TEST_F(CommandEffects, BothTracersAndAllTreesSeeTheSameShadows) {
 TEST_F(CommandEffects, ExplainNamesWhatCalledForEach) {
   const Outcome outcome = run("render scene.json -o out.png --size 16x16 --explain --effects=-lights");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_NE(
-      outcome.out.find("lights            off  turned off by --effects; called for by /lights/1, a point\n"),
-      std::string::npos)
+  EXPECT_NE(outcome.out.find(
+                "lights              off  turned off by --effects; called for by /lights/1, a point\n"),
+            std::string::npos)
       << outcome.out;
-  EXPECT_NE(outcome.out.find("shadows           on   called for by /lights/0, which casts shadows\n"),
+  EXPECT_NE(outcome.out.find("shadows             on   called for by /lights/0, which casts shadows\n"),
             std::string::npos);
   const Outcome plain = run("render one.obj -o out.png --size 16x16 --explain");
-  EXPECT_NE(plain.out.find("shadows           off  nothing calls for it\n"), std::string::npos) << plain.out;
+  EXPECT_NE(plain.out.find("shadows             off  nothing calls for it\n"), std::string::npos)
+      << plain.out;
   const json explained = report_of("render scene.json -o out.png --explain")["explained"];
   EXPECT_EQ(explained[1]["name"], "shadows");
   EXPECT_EQ(explained[1]["on"], true);
@@ -118,7 +119,7 @@ TEST_F(CommandEffects, ATextureThatIsMissingIsNamedAndACheckerIsSeen) {
   write_wall();
   const Outcome outcome = run("render wall.obj -o out.png --size 32x32 --explain");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("textures          on   called for by material 'wall', which has gone.png\n"),
+  EXPECT_NE(outcome.out.find("textures            on   called for by material 'wall', which has gone.png\n"),
             std::string::npos)
       << outcome.out;
   const Outcome without = run("render wall.obj -o out.png --size 32x32 --effects=-textures");
