@@ -143,6 +143,7 @@ TEST_F(DeviceOcclusion, IsOfAmbientLightAlone) {
   Scene scene = wall_on_ground(5e4f);
   scene.occlusion = AmbientOcclusion{1e30f};
   scene.materials[0].emission = vec3(2);
+  scene.materials[0].is_unlit = true;  // or it would be a light
   scene.light.direction = vec3(0, 1, 0);
   scene.light.radiance = vec3(4);
   const Occluded seen = occluded(scene, occluded_options(4)),
