@@ -3,6 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/instances.h"
+#include "interface/shade.h"
 #include "lib/instance.glsl"
 #include "lib/triangle_words.glsl"
 

@@ -1,7 +1,7 @@
 // In:  radiance summed over the samples. Out: RGBA8 pixels, sRGB; exposed and tone mapped before, if that is asked for.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "interface/trace.h"
+#include "interface/shade.h"
 #include "lib/film_pixel.glsl"
 #include "lib/srgb_code.glsl"
 #include "lib/tone_map.glsl"

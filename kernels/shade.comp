@@ -1,7 +1,7 @@
 // In:  hits. Out: radiance, added up over the samples of a pixel.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "interface/trace.h"
+#include "interface/shade.h"
 #include "lib/ray_words.glsl"
 #include "lib/scene_light.glsl"
 

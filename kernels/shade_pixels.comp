@@ -2,7 +2,7 @@
 // one go: the ray's direction is made once more, and no radiance is kept.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "interface/trace.h"
+#include "interface/shade.h"
 #include "lib/camera_ray.glsl"
 #include "lib/film_pixel.glsl"
 #include "lib/ray_words.glsl"

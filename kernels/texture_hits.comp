@@ -4,6 +4,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "interface/texture_hits.h"
+#include "lib/device_count.glsl"
 #include "lib/exact_vector.glsl"
 #include "lib/ray_words.glsl"
 #include "lib/texture.glsl"
@@ -34,7 +35,7 @@ vec3 map_colour(uint map, vec2 uv, float level) {
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
-  if (i >= args.ray_count) return;
+  if (i >= counted(args.count_at, args.ray_count)) return;
   Hit hit = load_hit(args.hits, i);
   if (hit.triangle == NO_TRIANGLE) return;
   uint which = args.material_index.at[hit.triangle];

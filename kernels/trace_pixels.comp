@@ -3,7 +3,7 @@
 // (lib/wide_packet.glsl), whose triangles are still in the cache when their pixels are shaded.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "interface/trace.h"
+#include "interface/shade.h"
 #include "lib/camera_ray.glsl"
 #include "lib/film_pixel.glsl"
 

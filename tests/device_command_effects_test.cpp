@@ -22,6 +22,14 @@ class CommandEffects : public Command {
                   { "position": [0, 3, 1], "shadows": true }, { "position": [2, 2, 2] } ] })");
   }
 
+  // A triangle with a texture that is not there.
+  static void write_wall() {
+    write("wall.mtl", "newmtl wall\nKd 1 1 1\nmap_Kd gone.png\n");
+    write("wall.obj",
+          "mtllib wall.mtl\nusemtl wall\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0.5 1\n"
+          "f 1/1 2/2 3/3\n");
+  }
+
   static json report_of(const std::string& arguments) {
     const Outcome outcome = run(arguments + " --size 64x48 --json -");
     EXPECT_EQ(outcome.status, 0) << arguments << ": " << outcome.err;
@@ -67,13 +75,15 @@ TEST_F(CommandEffects, BothTracersAndAllTreesSeeTheSameShadows) {
 TEST_F(CommandEffects, ExplainNamesWhatCalledForEach) {
   const Outcome outcome = run("render scene.json -o out.png --size 16x16 --explain --effects=-lights");
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("lights   off  turned off by --effects; called for by /lights/1, a point\n"),
+  EXPECT_NE(outcome.out.find(
+                "lights              off  turned off by --effects; called for by /lights/1, a point\n"),
             std::string::npos)
       << outcome.out;
-  EXPECT_NE(outcome.out.find("shadows  on   called for by /lights/0, which casts shadows\n"),
+  EXPECT_NE(outcome.out.find("shadows             on   called for by /lights/0, which casts shadows\n"),
             std::string::npos);
   const Outcome plain = run("render one.obj -o out.png --size 16x16 --explain");
-  EXPECT_NE(plain.out.find("shadows  off  nothing calls for it\n"), std::string::npos) << plain.out;
+  EXPECT_NE(plain.out.find("shadows             off  nothing calls for it\n"), std::string::npos)
+      << plain.out;
   const json explained = report_of("render scene.json -o out.png --explain")["explained"];
   EXPECT_EQ(explained[1]["name"], "shadows");
   EXPECT_EQ(explained[1]["on"], true);
@@ -82,7 +92,7 @@ TEST_F(CommandEffects, ExplainNamesWhatCalledForEach) {
 
 TEST_F(CommandEffects, TheTableHasTheCostOfWhatIsOnAndZeroesForTheRest) {
   const json rich = report_of("effects scene.json")["effects"];
-  ASSERT_EQ(rich.size(), 4u);
+  ASSERT_EQ(rich.size(), 10u);
   EXPECT_EQ(rich[0]["name"], "lights");
   EXPECT_GT(rich[0]["rays"], 0) << "one of the points casts shadows";
   const json& shadows = rich[1];
@@ -106,19 +116,12 @@ TEST_F(CommandEffects, TheTableHasTheCostOfWhatIsOnAndZeroesForTheRest) {
 }
 
 TEST_F(CommandEffects, ATextureThatIsMissingIsNamedAndACheckerIsSeen) {
-  write("wall.mtl", "newmtl wall\nKd 1 1 1\nmap_Kd gone.png\n");
-  write("wall.obj",
-        "mtllib wall.mtl\nusemtl wall\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0.5 1\nf 1/1 2/2 "
-        "3/3\n");
+  write_wall();
   const Outcome outcome = run("render wall.obj -o out.png --size 32x32 --explain");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("textures on   called for by material 'wall', which has gone.png\n"),
+  EXPECT_NE(outcome.out.find("textures            on   called for by material 'wall', which has gone.png\n"),
             std::string::npos)
       << outcome.out;
-  EXPECT_NE(
-      outcome.err.find("gone.png: no such file, a checker takes its place as map_Kd of material 'wall'\n"),
-      std::string::npos)
-      << outcome.err;
   const Outcome without = run("render wall.obj -o out.png --size 32x32 --effects=-textures");
   EXPECT_EQ(without.err.find("gone.png"), std::string::npos) << without.err;
   EXPECT_NE(report_of("render wall.obj -o out.png")["image_hash"],
@@ -131,6 +134,75 @@ TEST_F(CommandEffects, ATextureThatIsMissingIsNamedAndACheckerIsSeen) {
   EXPECT_GT(cost["bytes"], 0);
 }
 
+// Whatever makes the picture, and however often its arrays are looked at.
+TEST_F(CommandEffects, EveryCommandWarnsOnceOfATextureThatIsMissing) {
+  write_wall();
+  for (const char* command :
+       {"render wall.obj -o out.png", "render wall.obj -o out.png --tracer cpu", "effects wall.obj",
+        "lockstep wall.obj", "animate wall.obj --frames 2", "animate wall.obj --frames 30 --tree binary"}) {
+    const Outcome outcome = run(std::string(command) + " --size 16x16");
+    EXPECT_EQ(outcome.status, 0) << command << ": " << outcome.err;
+    EXPECT_EQ(without_notes(outcome.err),
+              "warning: gone.png: no such file, a checker takes its place as map_Kd of material 'wall'\n")
+        << command;
+  }
+}
+
+TEST_F(CommandEffects, TheLensIsThatOfTheSceneOrOfTheCommandLine) {
+  const std::string render = "render one.obj -o out.png --camera 0,0,5,0,0,0 --spp 4";
+  const json sharp = report_of(render), blurred = report_of(render + " --aperture 0.5 --focus 2");
+  EXPECT_EQ(blurred["effects"].back(), "depth_of_field");
+  EXPECT_NE(blurred["image_hash"], sharp["image_hash"]);
+  EXPECT_EQ(blurred["image_hash"],
+            report_of(render + " --aperture 0.5 --focus 2 --tree binary")["image_hash"]);
+  EXPECT_EQ(report_of(render + " --aperture 0")["image_hash"], sharp["image_hash"]);
+  EXPECT_EQ(report_of(render + " --aperture 0.5 --effects=-depth_of_field")["image_hash"],
+            sharp["image_hash"]);
+  write("lens.json", R"({ "meshes": { "two": { "file": "two.obj" } }, "objects": [ { "mesh": "two" } ],
+      "camera": { "position": [3, 8, 6], "target": [0, 0, 0], "aperture": 0.5 } })");
+  const json scene = report_of("render lens.json -o out.png --spp 2");
+  EXPECT_EQ(report_of("animate lens.json --frames 1 --spp 2")["frame_hashes"][0], scene["image_hash"]);
+  EXPECT_TRUE(report_of("lockstep lens.json --spp 2")["equal"]);
+  const json cost = report_of("effects lens.json --spp 2")["effects"][3];
+  EXPECT_EQ(cost["name"], "depth_of_field");
+  EXPECT_EQ(cost["called_by"], "/camera/aperture");
+  EXPECT_EQ(cost["kernels"], json::array());
+  EXPECT_EQ(cost["rays"], 0);
+  EXPECT_GT(report_of("render instances:20 -o out.png --aperture 0.5")["instances"], 0);
+  const Outcome unused = run(render + " --size 16x16 --focus 2");
+  EXPECT_NE(unused.err.find("warning: --focus means nothing without an aperture\n"), std::string::npos);
+  fs::remove("out.png");
+  expect_refused(render + " --aperture=-1", 2, "--aperture: '-1' is no length from 0 to 1e30");
+  expect_refused(render + " --focus 0", 2, "--focus: '0' is no length from 1e-30 to 1e30");
+}
+
+TEST_F(CommandEffects, AmbientOcclusionIsCountedAndCosted) {
+  write("nook.json", R"({ "meshes": { "two": { "file": "two.obj" } }, "objects": [ { "mesh": "two" } ],
+      "camera": { "position": [3, 8, 6], "target": [0, 0, 0] }, "ambient_occlusion": { "distance": 3 } })");
+  const json seen = report_of("render nook.json -o out.png --spp 2");
+  EXPECT_EQ(seen["effects"].back(), "ambient_occlusion");
+  EXPECT_EQ(seen["rays"]["shadow"], 0);
+  EXPECT_GT(seen["rays"]["occlusion"], 64 * 48);
+  const json cpu = report_of("render nook.json -o out.png --spp 2 --tracer cpu");
+  EXPECT_NEAR(cpu["rays"]["occlusion"].get<double>(), seen["rays"]["occlusion"].get<double>(), 4);
+  EXPECT_EQ(cpu["rays"]["shadow"], 0);
+  const json frames = report_of("animate nook.json --frames 1 --spp 2");
+  EXPECT_EQ(frames["frame_hashes"][0], seen["image_hash"]);
+  EXPECT_EQ(frames["rays"]["occlusion"], seen["rays"]["occlusion"]);
+  EXPECT_TRUE(report_of("lockstep nook.json --spp 2")["equal"]);
+  const json cost = report_of("effects nook.json --spp 2")["effects"][4];
+  EXPECT_EQ(cost["name"], "ambient_occlusion");
+  EXPECT_EQ(cost["rays"], seen["rays"]["occlusion"]);
+  EXPECT_GT(cost["bytes"], 64 * 48 * 44);
+  EXPECT_EQ(report_of("render nook.json -o out.png --effects=-ambient_occlusion")["rays"]["occlusion"], 0);
+  EXPECT_GT(report_of("render one.obj -o out.png --effects +ambient_occlusion")["rays"]["occlusion"], 0);
+  fs::remove("out.png");
+  expect_refused("render nook.json -o out.png --builder none", 1,
+                 "--builder none: ambient occlusion is traced through a tree");
+  expect_refused("animate instances:20 --frames 1 --size 16x16 --effects +ambient_occlusion", 1,
+                 "through which no occlusion rays are traced (--effects=-ambient_occlusion goes without)");
+}
+
 TEST_F(CommandEffects, AMapOfOpacityThatIsMissingIsNamedAndHolesAreSeen) {
   write("leaf.mtl", "newmtl leaf\nKd 1 1 1\nmap_d gone.png\n");
   write("leaf.obj",
@@ -138,7 +210,7 @@ TEST_F(CommandEffects, AMapOfOpacityThatIsMissingIsNamedAndHolesAreSeen) {
         "3/3\n");
   const Outcome outcome = run("render leaf.obj -o out.png --size 32x32 --explain");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("alpha    on   called for by material 'leaf', which has gone.png\n"),
+  EXPECT_NE(outcome.out.find("alpha               on   called for by material 'leaf', which has gone.png\n"),
             std::string::npos)
       << outcome.out;
   EXPECT_NE(
@@ -149,7 +221,7 @@ TEST_F(CommandEffects, AMapOfOpacityThatIsMissingIsNamedAndHolesAreSeen) {
   const json without = report_of("render leaf.obj -o out.png --effects=-alpha");
   EXPECT_EQ(with["effects"], json({"ambient", "directional_light", "alpha"}));
   EXPECT_NEAR(with["hits"].get<double>(), without["hits"].get<double>() / 2, 100);
-  const json cost = report_of("effects leaf.obj")["effects"][3];
+  const json cost = report_of("effects leaf.obj")["effects"][9];
   EXPECT_EQ(cost["name"], "alpha");
   const std::vector<std::string> kernels = cost["kernels"];
   EXPECT_EQ(std::ranges::count_if(kernels, [](const std::string& name) { return name.ends_with("_alpha"); }),
@@ -172,7 +244,7 @@ TEST_F(CommandEffects, AColourMapThatIsACutOutIsSeenAsOne) {
         "mtllib leaf.mtl\nusemtl leaf\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0.25 0\nvt 0.75 0\n"
         "f 1/1 2/2 3/2 4/1\n");
   const Outcome outcome = run("render leaf.obj -o out.png --size 32x32 --explain");
-  EXPECT_NE(outcome.out.find("alpha    on   called for by material 'leaf', which has leaf.tga\n"),
+  EXPECT_NE(outcome.out.find("alpha               on   called for by material 'leaf', which has leaf.tga\n"),
             std::string::npos)
       << outcome.out << outcome.err;
   const std::string straight = " --camera 0,0,4,0,0,0";  // both halves are as large

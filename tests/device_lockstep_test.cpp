@@ -143,7 +143,7 @@ std::vector<uint> resolved(const std::vector<vec3>& radiance, const ToneMapping&
   options.samples = 2;  // radiance is kept
   const TracePlan trace = plan_trace(layout, plan_tree(layout, 1, 1), 1, options);
   LockstepExecutor executor(test_device(), layout);
-  const Film film{{}, count, {}, 1, {}, 1, {}, 0};
+  const Film film{{}, count, {}, 1, {}, 1, {}, 0, {}, 0, {}, 0};
   const auto thresholds = srgb_thresholds();
   executor.upload(trace.film, std::span<const Film>(&film, 1));
   executor.upload(trace.srgb_thresholds, std::span<const uint>(thresholds));

@@ -15,16 +15,16 @@ class DeviceTextureHits : public DeviceTest {};
 
 constexpr std::uint32_t width = 60, height = 60;
 
-FrameOptions frame_options(Walk walk) {
+FrameOptions textured_options(Walk walk) {
   FrameOptions options{.build = BuildOptions{}, .trace = test_trace_options(width, height)};
   options.trace.walk = walk;
   return options;
 }
 
-std::vector<uint> picture_of(const Scene& scene, Walk walk = Walk::binary, const char* changes = "") {
+std::vector<uint> textured_picture(const Scene& scene, Walk walk = Walk::binary, const char* changes = "") {
   const SceneArrays arrays = scene_arrays(scene, effects_of(scene, EffectChanges(changes)));
   Layout layout(test_device().properties().max_block_bytes);
-  const FramePlan plan = plan_frame(layout, arrays, frame_options(walk));
+  const FramePlan plan = plan_frame(layout, arrays, textured_options(walk));
   GpuExecutor executor(test_device(), layout);
   upload_frame(executor, plan, arrays, make_film(scene, {}, width, height, 1));
   Chain chain = executor.chain();
@@ -49,7 +49,7 @@ double srgb_code(double linear) {
 TEST_F(DeviceTextureHits, ColoursBetweenTexelsAreOnALine) {
   const Scene scene = textured_square(map_of(2, 1, {0xff0000, 0x00ff00}), 4);
   const Film film = make_film(scene, {}, width, height, 1);
-  const std::vector<uint> image = picture_of(scene);
+  const std::vector<uint> image = textured_picture(scene);
   int seen = 0;
   for (uint y = 0; y < height; ++y) {
     for (uint x = 0; x < width; ++x) {
@@ -69,7 +69,7 @@ TEST_F(DeviceTextureHits, ColoursBetweenTexelsAreOnALine) {
 
 TEST_F(DeviceTextureHits, TheUpperLeftTexelIsWhereThatOfTheImageIs) {
   const Scene scene = textured_square(map_of(2, 2, {0xff0000, 0x00ff00, 0x0000ff, 0xffffff}), 4);
-  const std::vector<uint> image = picture_of(scene);
+  const std::vector<uint> image = textured_picture(scene);
   const auto at = [&](uint x, uint y) { return image[y * width + x] & 0xffffffu; };
   EXPECT_EQ(at(14, 14), 0x0000ffu);  // red, in the lowest byte
   EXPECT_EQ(at(45, 14), 0x00ff00u);
@@ -82,7 +82,7 @@ TEST_F(DeviceTextureHits, FromAfarTexelsAreTheirMean) {
   for (uint i = 0; i < 256 * 256; ++i) pixels.push_back((i % 256 + i / 256) % 2 == 0 ? 0xffffffu : 0u);
   const Scene scene = textured_square(map_of(256, 256, pixels), 5);
   const Film film = make_film(scene, {}, width, height, 1);
-  const std::vector<uint> image = picture_of(scene);
+  const std::vector<uint> image = textured_picture(scene);
   for (uint y = 0; y < height; ++y) {
     for (uint x = 0; x < width; ++x) {
       const glm::dvec2 place = place_seen(film, x, y);
@@ -96,17 +96,20 @@ TEST_F(DeviceTextureHits, FromAfarTexelsAreTheirMean) {
 TEST_F(DeviceTextureHits, WithoutTheEffectThePictureIsThatOfTheMaterialAlone) {
   const Scene scene = textured_scene(200);
   Scene plain = scene;
-  for (Material& material : plain.materials) material.diffuse_map = material.emission_map = {};
-  EXPECT_EQ(picture_of(scene, Walk::binary, "-textures"), picture_of(plain));
-  EXPECT_NE(picture_of(scene), picture_of(plain));
+  for (Material& material : plain.materials) {
+    material.diffuse_map = material.emission_map = {};
+    material.is_unlit = true;  // without a map it would be a light
+  }
+  EXPECT_EQ(textured_picture(scene, Walk::binary, "-textures"), textured_picture(plain));
+  EXPECT_NE(textured_picture(scene), textured_picture(plain));
 }
 
 TEST_F(DeviceTextureHits, AllTreesShowTheSame) {
   Scene scene = textured_scene(300);
   scene.light.shadows = true;
-  const std::vector<uint> binary = picture_of(scene);
-  EXPECT_EQ(picture_of(scene, Walk::wide_packets), binary);
-  EXPECT_EQ(picture_of(scene, Walk::wide_single), binary);
+  const std::vector<uint> binary = textured_picture(scene);
+  EXPECT_EQ(textured_picture(scene, Walk::wide_packets), binary);
+  EXPECT_EQ(textured_picture(scene, Walk::wide_single), binary);
 }
 
 TEST_F(DeviceTextureHits, StagesAreInLockstepWithTheirTwins) {
@@ -116,7 +119,7 @@ TEST_F(DeviceTextureHits, StagesAreInLockstepWithTheirTwins) {
   const SceneArrays arrays = scene_arrays(scene, effects_of(scene));
   ASSERT_EQ(arrays.texture_counts().textures, 2u);
   Layout layout(test_device().properties().max_block_bytes);
-  const FramePlan plan = plan_frame(layout, arrays, frame_options(Walk::binary));
+  const FramePlan plan = plan_frame(layout, arrays, textured_options(Walk::binary));
   LockstepExecutor executor(test_device(), layout);
   upload_frame(executor, plan, arrays, make_film(scene, {}, width, height, 1));
   const auto difference = executor.run([&](Chain& chain) { append_frame(chain, plan); });

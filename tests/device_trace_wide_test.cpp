@@ -153,7 +153,8 @@ TEST_P(TraceWide, APictureInLockstep) {
     arrays.material_index.resize(triangles.size());
     arrays.materials = {{vec3(0.1f), vec3(0.8f)}};
     arrays.lighting = {vec3(0, 0, -1), 0, vec3(0.9f), 0, vec3(0.3f, 0.5f, 0.9f), 0};
-    Film film{vec3(0.5f, 0.5f, -2), size.x, vec3(-0.5f, 0.5f, 2), size.y, {}, options.samples, {}, 0};
+    Film film{
+        vec3(0.5f, 0.5f, -2), size.x, vec3(-0.5f, 0.5f, 2), size.y, {}, options.samples, {}, 0, {}, 0, {}, 0};
     film.right = vec3(1.0f / static_cast<float>(size.x), 0, 0);
     film.down = vec3(0, -1.0f / static_cast<float>(size.y), 0);
     upload_frame(executor, build, trace, arrays, film);

@@ -1,5 +1,6 @@
 // The window, on a display of its own and driven by real events: what it shows is what `render` makes, and it
 // stands whatever is done to it. Under the validation layers, of which a message ends it with status 1.
+#include <csignal>
 #include <nlohmann/json.hpp>
 
 #include "support/view_window.h"
@@ -85,6 +86,34 @@ TEST_F(ViewWindow, AnotherSceneIsTypedAndABadOneIsNamed) {
   EXPECT_EQ(std::ranges::count(without_notes(window_->err()), '\n'), 1) << window_->err();
 }
 
+// Each goes down and up within a frame.
+TEST_F(ViewWindow, NoKeyIsLostWhileFramesAreSlow) {
+  OPEN_OR_SKIP("moving:20000 --size 480x320 --rebuild --paused --builder gpu-ploc");
+  const auto cameras = [&] {
+    std::vector<std::string> lines;
+    std::istringstream out(window_->out());
+    for (std::string line; std::getline(out, line);) {
+      if (line.starts_with("render ")) lines.push_back(line);
+    }
+    return lines;
+  };
+  key("c");
+  EXPECT_TRUE(wait_until([&] { return cameras().size() == 1; }));
+  key("w");
+  key("c");
+  EXPECT_TRUE(wait_until([&] { return cameras().size() == 2; }));
+  EXPECT_NE(cameras().front(), cameras().back()) << "it does not fly";
+  EXPECT_TRUE(wait_until([&] {
+    desktop_->xdotool("mousemove 400 300 click 1 sleep 1 mousemove 100 30 click 1 sleep 1");
+    desktop_->xdotool("type --delay 1 scatter:70012");
+    // GLFW takes two strokes of a key within a millisecond for one.
+    desktop_->xdotool("key --delay 4 BackSpace BackSpace Return");
+    return wait_until([&] { return shows("scene scatter:"); }, std::chrono::seconds(20));
+  }));
+  expect_line("scene scatter:700: 700 triangles");
+  close();
+}
+
 // What is asked for meanwhile is there once it is seen again.
 TEST_F(ViewWindow, IsMinimisedAndShownAgain) {
   OPEN_OR_SKIP("moving:500 --size 200x150 --pictures picture");
@@ -116,6 +145,28 @@ TEST_F(ViewWindow, IsClosedWhileASceneIsOpenedAndBuilt) {
   desktop_->xdotool("windowfocus " + id);
   key("Escape");
   EXPECT_EQ(window_->wait(), 0) << window_->err();
+}
+
+TEST_F(ViewWindow, IsInterruptedWhileASceneIsOpenedAndBuilt) {
+  ASSERT_TRUE(open("scatter:400000 --builder gd16 --size 200x150", false));
+  wait_until([&] { return !id_of_window().empty() || window_->has_ended(); });
+  if (window_->has_ended() && window_->err().find("cannot present") != std::string::npos)
+    CANNOT_OPEN("the driver cannot present");
+  window_->send(SIGINT);
+  EXPECT_EQ(window_->wait(), 128 + SIGINT);
+  EXPECT_EQ(without_notes(window_->err()), "coppice: interrupted\n");
+}
+
+TEST_F(ViewWindow, WarnsOnceOfATextureThatIsMissing) {
+  write("wall.mtl", "newmtl wall\nKd 1 1 1\nmap_Kd gone.png\n");
+  write("wall.obj",
+        "mtllib wall.mtl\nusemtl wall\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0.5 1\n"
+        "f 1/1 2/2 3/3\n");
+  OPEN_OR_SKIP("wall.obj --size 64x48 --rebuild");
+  key("Escape");
+  EXPECT_EQ(window_->wait(), 0) << window_->err();
+  EXPECT_EQ(without_notes(window_->err()),
+            "warning: gone.png: no such file, a checker takes its place as map_Kd of material 'wall'\n");
 }
 
 TEST_F(ViewWindow, FramesOfAMovingSceneAreThoseOfAnimateHoweverItsTreesAreMade) {

@@ -82,6 +82,27 @@ TEST(Traffic, OfLightsAndShadows) {
   EXPECT_EQ(bytes["shade_lights"], plain + 2 * (1000 * 4 + 250 * 4) + 200 * 8 + 160 * 112);
 }
 
+// 1,000 rays, of which 250 hit something and have an occlusion ray; 50 of these are blocked.
+TEST(Traffic, OfAmbientOcclusion) {
+  Layout layout;
+  const TreeSlots tree = plan_tree(layout, 100, 199);
+  const TracePlan plan =
+      plan_trace(layout, tree, 1, {.width = 40, .height = 25, .lights = {.occlusion = true}});
+  Chain chain(nowhere);
+  append_trace(chain, tree, plan);
+  RunCounts counts;
+  counts.rays = 1000, counts.hits = 250, counts.steps = 4000;
+  counts.occlusion = {1000, 250, 50, 2000};
+  std::map<std::string, std::uint64_t> bytes;
+  for (const Step& step : chain.steps()) {
+    if (stage_of(step)) bytes[stage_of(step)->name] += modelled_bytes(step, counts);
+  }
+  EXPECT_EQ(bytes["occlusion_marks"], 1000u * 8 + 250 * 28);
+  EXPECT_EQ(bytes["occlusion_rays"], 1000u * 8 + 250 * 96);
+  EXPECT_EQ(bytes["trace_any"], 250u * 36 + 2000 * 64 + 50 * 36);
+  EXPECT_EQ(bytes["shade_ambient"], 1000u * 4 + 250 * 8 + 200 * 56);
+}
+
 // 1,000 rays, of which 250 hit something.
 TEST(Traffic, OfTextures) {
   Layout layout;

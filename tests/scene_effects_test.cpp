@@ -6,6 +6,7 @@
 #include "measure/effects_report.h"
 #include "render/frame.h"
 #include "scene/effect_set.h"
+#include "scene/surface_effects.h"
 #include "support/scene_file_text.h"
 
 namespace coppice {
@@ -147,6 +148,85 @@ TEST(Effects, ChangesOverrideWhatTheSceneCallsFor) {
   EXPECT_TRUE(off.of(Effect::shadows).overridden);
 }
 
+Material named(const char* name) {
+  Material material;
+  material.name = name;
+  return material;
+}
+
+// A scene with a triangle of that material.
+Scene made_of(const Material& material) {
+  Scene scene = with_light();
+  scene.materials.push_back(material);
+  scene.material_index.back() = static_cast<std::uint32_t>(scene.materials.size() - 1);
+  return scene;
+}
+
+TEST(Effects, WhatEmitsReflectsOrLetsLightThroughCallsForPaths) {
+  Material lamp = named("lamp");
+  lamp.emission = {0, 1, 0};
+  EXPECT_EQ(caller(made_of(lamp), Effect::emission), "material 'lamp', which emits light");
+  EXPECT_EQ(caller(made_of(lamp), Effect::shadows), "material 'lamp', whose light casts them");
+  lamp.is_unlit = true;
+  EXPECT_EQ(caller(made_of(lamp), Effect::emission), "");
+  for (const int illum : {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}) {
+    Material surface = named("surface");
+    surface.illum = illum;
+    surface.opacity = 0.5f;
+    EXPECT_EQ(caller(made_of(surface), Effect::reflection), "") << illum;  // Ks is black
+    surface.specular = {0, 0, 0.5f};
+    const bool reflects = illum >= 3 && illum <= 7, refracts = illum == 4 || illum == 6 || illum == 7;
+    EXPECT_EQ(!caller(made_of(surface), Effect::reflection).empty(), reflects) << illum;
+    EXPECT_EQ(!caller(made_of(surface), Effect::refraction).empty(), refracts) << illum;
+    surface.opacity = 1;
+    EXPECT_EQ(transmission_of(surface), illum == 6 || illum == 7 ? 1 : 0) << illum;
+  }
+  Material metal = named("metal");
+  metal.metallic = 0.1f;
+  EXPECT_EQ(caller(made_of(metal), Effect::reflection), "material 'metal', which reflects");
+  metal.metallic_map.name = "map";  // paths do not read it
+  EXPECT_EQ(caller(made_of(metal), Effect::reflection), "");
+  Scene scene = with_light();
+  EXPECT_FALSE(effects_of(scene, EffectChanges("+reflection,+refraction,+emission")).follows_paths());
+  EXPECT_TRUE(effects_of(scene, EffectChanges("+global_illumination")).follows_paths());
+  scene.global_illumination = true;
+  EXPECT_EQ(caller(scene, Effect::global_illumination), "/global_illumination");
+}
+
+TEST(Effects, EmittersTakeThePlaceOfTheDefaultLight) {
+  Scene scene = make_built_in("grove");
+  scene.materials[scene.material_index[0]].emission = glm::vec3(1);
+  EXPECT_TRUE(path_lights(scene, effects_of(scene)).empty());
+  EXPECT_EQ(path_lights(scene, effects_of(scene, EffectChanges("-emission"))).size(), 1u);
+  scene.light_origin = "/light";
+  EXPECT_EQ(path_lights(scene, effects_of(scene)).size(), 1u);
+}
+
+TEST(Effects, LightsAreChosenInProportionToTheirPower) {
+  Scene scene;
+  scene.light.radiance = vec3(0);
+  scene.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}};
+  scene.indices = {{0, 1, 2}, {0, 3, 2}, {0, 0, 3}};  // the last one has no area
+  scene.material_index = {0, 1, 1};
+  scene.materials = {named("dim"), named("bright")};
+  scene.materials[0].emission = vec3(1);
+  scene.materials[1].emission = vec3(3);
+  scene.more_lights.push_back({.is_point = true, .origin = "lamp"});
+  const PathArrays paths = scene_arrays(scene, effects_of(scene)).paths;
+  ASSERT_EQ(paths.choices.size(), 3u);
+  uint before = 0;
+  for (const LightChoice& choice : paths.choices) {
+    EXPECT_EQ(choice.probability * LIGHT_CHOICE_RANGE, choice.end - before);
+    before = choice.end;
+  }
+  EXPECT_EQ(before, LIGHT_CHOICE_RANGE);
+  EXPECT_EQ(paths.choices[0].source, LIGHT_CHOICE_LISTED);
+  EXPECT_EQ(paths.choices[0].probability, 0.5f);
+  EXPECT_NEAR(paths.emitter_probability[0], 0.5 / 7, 1e-6);
+  EXPECT_NEAR(paths.emitter_probability[1], 3.0 / 7, 1e-6);
+  EXPECT_EQ(paths.emitter_probability[2], 0);
+}
+
 TEST(Effects, ChangesThatNobodyKnowsAreNamed) {
   const auto error_of = [](const char* text) -> std::string {
     try {
@@ -156,7 +236,9 @@ TEST(Effects, ChangesThatNobodyKnowsAreNamed) {
     }
     return "";
   };
-  const std::string all = " is no + or - and an effect behind it: there are lights, shadows, textures, alpha";
+  const std::string all =
+      " is no + or - and an effect behind it: there are lights, shadows, textures, "
+      "depth_of_field, ambient_occlusion, emission, reflection, refraction, global_illumination, alpha";
   EXPECT_EQ(error_of("+fog"), "'+fog'" + all);
   EXPECT_EQ(error_of("shadows"), "'shadows'" + all);
   EXPECT_EQ(error_of("+"), "'+'" + all);
@@ -248,13 +330,13 @@ TEST(Effects, AlphaTakesOtherTracersAndNothingElse) {
   scene.materials[scene.material_index[0]].opacity = 0.5f;
   const RecordedPicture alpha = recorded(scene, "-shadows");
   EXPECT_EQ(kernels_of(alpha), "camera_rays*1 trace_closest_alpha*1 shade_pixels*1");
-  EXPECT_EQ(alpha.effect_steps[3], 1u);
+  EXPECT_EQ(alpha.effect_steps[9], 1u);
   const RecordedPicture shadows = recorded(scene);
   EXPECT_EQ(kernels_of(shadows),
             "camera_rays*1 trace_closest_alpha*1 shade*1 shadow_marks*1 scan_tile_sums*1 prefix_scan*2 "
             "shadow_rays*1 trace_any_alpha*1 shade_lights*1 resolve*1");
   EXPECT_EQ(shadows.effect_steps[1], 7u);
-  EXPECT_EQ(shadows.effect_steps[3], 2u);
+  EXPECT_EQ(shadows.effect_steps[9], 2u);
   for (const auto& [walk, tracer] : {std::pair{Walk::wide_packets, "trace_wide_alpha*1"},
                                      std::pair{Walk::wide_single, "trace_wide_single_alpha*1"}}) {
     const std::string kernels = kernels_of(recorded(scene, "", 1, walk));
@@ -265,13 +347,67 @@ TEST(Effects, AlphaTakesOtherTracersAndNothingElse) {
                         forced = recorded(with_light(), "+alpha");
   for (const RecordedPicture& picture : {without, forced}) {
     EXPECT_EQ(kernels_of(picture), "camera_rays*1 trace_closest*1 shade_pixels*1");
-    EXPECT_EQ(picture.effect_steps[3], 0u);
+    EXPECT_EQ(picture.effect_steps[9], 0u);
     for (const char* slot : {"alpha_triangles", "alpha_maps", "alpha_texels"}) {
       EXPECT_TRUE(has_slot(alpha, slot)) << slot;
       EXPECT_FALSE(has_slot(picture, slot)) << slot;
     }
   }
   EXPECT_GT(alpha.device_bytes, without.device_bytes);
+}
+
+TEST(Effects, AnApertureCallsForDepthOfFieldWhichChangesAKernelAndAddsNone) {
+  json file = with_object();
+  file["camera"] = {{"position", {0, 0, 4}}, {"target", {0, 0, 0}}, {"aperture", 0.25}, {"focus", 3}};
+  Scene scene = read_scene(file);
+  EXPECT_EQ(caller(scene, Effect::depth_of_field), "/camera/aperture");
+  EXPECT_FALSE(effects_of(scene).needs_one_level());
+  const RecordedPicture blurred = recorded(scene, "", 2), sharp = recorded(scene, "-depth_of_field", 2);
+  EXPECT_EQ(kernels_of(blurred), kernels_of(sharp));
+  EXPECT_EQ(blurred.device_bytes, sharp.device_bytes);
+  EXPECT_EQ(blurred.effect_steps[3], 2u);
+  EXPECT_EQ(sharp.effect_steps[3], 0u);
+  const RecordedPicture wide = recorded(scene, "", 1, Walk::wide_packets);
+  EXPECT_EQ(kernels_of(wide), "camera_rays*1 trace_wide*1 shade*1 resolve*1");
+  EXPECT_EQ(kernels_of(recorded(scene, "-depth_of_field", 1, Walk::wide_packets)), "trace_pixels*1");
+  scene.lens.aperture = 0;
+  EXPECT_EQ(caller(scene, Effect::depth_of_field), "");
+  EXPECT_EQ(kernels_of(recorded(scene, "+depth_of_field", 1, Walk::wide_packets)), "trace_pixels*1")
+      << "without an aperture there is nothing to do";
+}
+
+TEST(Effects, TheSceneFileCallsForAmbientOcclusion) {
+  json file = with_object();
+  file["ambient_occlusion"] = {{"distance", 0.5}};
+  const Scene scene = read_scene(file);
+  EXPECT_EQ(caller(scene, Effect::ambient_occlusion), "/ambient_occlusion");
+  EXPECT_TRUE(effects_of(scene).needs_one_level());
+  EXPECT_EQ(scene_arrays(scene).light_counts, (LightCounts{1, 0, false, true}));
+  const RecordedPicture on = recorded(scene, "", 2), off = recorded(scene, "-ambient_occlusion", 2);
+  EXPECT_EQ(kernels_of(on),
+            "camera_rays*2 trace_closest*2 shade*2 shade_lights*2 occlusion_marks*2 scan_tile_sums*2 "
+            "prefix_scan*4 occlusion_rays*2 trace_any*2 shade_ambient*2 resolve*1");
+  EXPECT_EQ(on.effect_steps[0], 0u);
+  EXPECT_EQ(on.effect_steps[1], 0u);
+  EXPECT_EQ(on.effect_steps[4], 2u * 8) << "the plain light is one of a list";
+  EXPECT_EQ(kernels_of(off), "camera_rays*2 trace_closest*2 shade*2 resolve*1");
+  EXPECT_EQ(off.effect_steps[4], 0u);
+  for (const char* slot : {"ambient_light", "occlusion_counters", "shadow_rays"}) {
+    EXPECT_TRUE(has_slot(on, slot)) << slot;
+    EXPECT_FALSE(has_slot(off, slot)) << slot;
+  }
+  EXPECT_FALSE(has_slot(on, "shadow_counters"));
+  const RecordedPicture turned_on = recorded(with_light(), "+ambient_occlusion");
+  EXPECT_EQ(turned_on.effect_steps[4], 8u);
+  const RecordedPicture both = recorded(with_lights({shadowed(sun)}), "+ambient_occlusion");
+  EXPECT_EQ(both.effect_steps[1], 7u);
+  EXPECT_EQ(both.effect_steps[4], 7u);
+  const RecordedPicture shadows = recorded(with_lights({shadowed(sun)}));
+  EXPECT_LE(both.device_bytes - shadows.device_bytes, 1024u) << "both take the same queue";
+  file["light"] = {{"ambient", {0, 0, 0}}, {"radiance", {1, 1, 1}}};
+  const Scene dark = read_scene(file);
+  EXPECT_EQ(caller(dark, Effect::ambient_occlusion), "") << "there is nothing to keep off";
+  EXPECT_EQ(kernels_of(recorded(dark, "+ambient_occlusion")), kernels_of(recorded(dark)));
 }
 
 TEST(Effects, ViewsThatShowNoColoursHaveNone) {
@@ -293,6 +429,9 @@ TEST(Effects, ShadowsNeedATreeOfOneLevel) {
   EXPECT_THROW(plan_frame(layout, scene_arrays(with_lights({shadowed(sun)})), options),
                std::invalid_argument);
   EXPECT_NO_THROW(plan_frame(layout, scene_arrays(with_lights({sun, lamp})), options));
+  Scene occluded = with_light();
+  occluded.occlusion = AmbientOcclusion{};
+  EXPECT_THROW(plan_frame(layout, scene_arrays(occluded), options), std::invalid_argument);
 }
 
 // --- Scene files.

@@ -217,5 +217,31 @@ TEST(SceneFiles, ScenesThatShipAreRead) {
   EXPECT_GE(moving, 3u);
 }
 
+TEST(SceneFiles, TheLensIsOfTheCameraAndFollowsTheScene) {
+  json file = with_object({{"scale", 0x1p-40}});
+  file["camera"] = {{"position", {0, 0, 0x1p-38}}, {"target", {0, 0, 0}}};
+  EXPECT_EQ(read_scene(file).lens.aperture, 0);
+  file["camera"]["aperture"] = 0x1p-42;
+  file["camera"]["focus"] = 0x1p-39;
+  file["ambient_occlusion"] = {{"distance", 0x1p-41}};
+  file["up"] = "z";
+  Scene scene = read_scene(file);
+  EXPECT_EQ(scene.lens.aperture, 0x1p-42f);
+  EXPECT_EQ(scene.lens.focus, 0x1p-39f);
+  bring_into_range(scene);
+  EXPECT_EQ(scene.lens.aperture, std::ldexp(0x1p-42f, scene.scale_exponent));
+  EXPECT_EQ(scene.lens.focus, std::ldexp(0x1p-39f, scene.scale_exponent));
+  EXPECT_EQ(scene.occlusion.value().distance, std::ldexp(0x1p-41f, scene.scale_exponent));
+  set_lens(scene, {.aperture = 0x1p-41, .focus = {}});
+  EXPECT_EQ(scene.lens.aperture, std::ldexp(0x1p-41f, scene.scale_exponent));
+  EXPECT_EQ(scene.lens.origin, "--aperture");
+  EXPECT_TRUE(scene.warnings.empty());
+  set_lens(scene, {.aperture = 0, .focus = 1});
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_EQ(scene.warnings[0], "--focus means nothing without an aperture");
+  stand_up(scene, "x");
+  EXPECT_EQ(scene.lens.focus, 0) << "as there is no camera of the scene's any more";
+}
+
 }  // namespace
 }  // namespace coppice

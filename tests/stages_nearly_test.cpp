@@ -176,6 +176,25 @@ TEST(Nearly, SumsOfSquaredErrorsMayBeSomeRoundingsOff) {
   EXPECT_FALSE(compared(Nearly::noise, sums, off).holds());
 }
 
+TEST(Nearly, SurfacesAndPathsByTheirFloatsAndEachWordOfTheRest) {
+  const std::vector<SurfacePoint> surfaces(3, {{0, 1, 0}, 0.5f, {1, 2, 3}, 1, {0, 0, 0}, 0.25f});
+  std::vector<SurfacePoint> off = surfaces;
+  off[1].roughness = next(0.5f);
+  EXPECT_TRUE(compared(Nearly::surfaces, surfaces, off).holds());
+  off[0].transmission = off[1].transmission = 0.26f;  // one of a thousand, and part of one, may
+  EXPECT_FALSE(compared(Nearly::surfaces, surfaces, off).holds());
+  const std::vector<Path> paths(3, {{1, 2, 3}, 4, 5, 6, 7, 0});
+  std::vector<Path> other = paths;
+  other[1].pdf = next(5);
+  EXPECT_TRUE(compared(Nearly::paths, paths, other).holds());
+  for (uint Path::*const word : {&Path::pixel, &Path::flags, &Path::seed, &Path::padding}) {
+    other = paths;
+    other[0].*word ^= 1;
+    other[1].*word ^= 1;
+    EXPECT_FALSE(compared(Nearly::paths, paths, other).holds());
+  }
+}
+
 TEST(Nearly, OnlyStagesThatDivideOrTakeRootsAreNearlyEqual) {
   for (const StageDeclaration* const stage : all_stages()) {
     const std::string_view name = stage->name;
@@ -183,7 +202,8 @@ TEST(Nearly, OnlyStagesThatDivideOrTakeRootsAreNearlyEqual) {
     const bool may = traces || name == "camera_rays" || name == "bounce_rays" || name == "shade" ||
                      name == "resolve" || name == "shade_pixels" || name == "show" || name == "shadow_rays" ||
                      name == "noise_sum" || name == "noise_marks" || name == "shade_lights" ||
-                     name == "texture_hits";
+                     name == "texture_hits" || name == "occlusion_rays" || name == "path_surfaces" ||
+                     name == "path_lights" || name == "path_bounce";
     EXPECT_EQ(!stage->nearly.empty(), may) << name;
   }
 }

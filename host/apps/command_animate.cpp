@@ -85,7 +85,8 @@ class AnimateCommand : public Command {
     app.add_option("--csv", files.csv, "every frame, comma-separated")->type_name("FILE");
     app.add_flag("--kernels", kernels_, "print the time of every kernel of one frame");
     add_picture(app, picture_, scene_.up);
-    add_effects(app, scene_.effects);
+    add_effects(app, scene_);
+    add_lens(app, scene_);
     add_tone(app, picture_.trace.tone);
     add_tree(app, device_.choices.walk);
     add_trace_events(app, files.trace_events);
@@ -126,7 +127,6 @@ class AnimateCommand : public Command {
     if (!cycle) print_note(why_still(scene));
     AnimateRuns runs{.builder = builder_, .trace = picture_.trace, .camera = picture_.camera};
     runs.update = update_;
-    runs.effects = scene_.effects;
     runs.tree_cost = tree_cost_ || !files.plot.empty() || !files.csv.empty();
     runs.first = first_;
     runs.last = last_;
@@ -144,9 +144,10 @@ class AnimateCommand : public Command {
     if (!scene.instances.empty()) runs.trace.walk = Walk::binary;
     std::vector<Walk> walks = {runs.trace.walk};
     if (tries_walks_ && scene.instances.empty()) walks = {Walk::binary, device.wide_walk()};
-    runs.tried =
-        choose_tree(device, scene, runs, builders_.empty() ? std::vector{builder_.name} : builders_, walks);
-    const AnimateReport report = animate(device, scene, runs);
+    SceneArrays arrays = picture_arrays(scene, scene_.effects);
+    runs.tried = choose_tree(device, scene, arrays, runs,
+                             builders_.empty() ? std::vector{builder_.name} : builders_, walks);
+    const AnimateReport report = animate(device, scene, std::move(arrays), runs);
     if (files.talks()) print(text_of(report));
     if (!files.csv.empty()) write_file(files.csv, to_csv(report));
     if (!files.plot.empty()) write_file(files.plot, to_svg(report));

@@ -14,7 +14,8 @@ class EffectsCommand : public Command {
  public:
   void add_options(CLI::App& app) override {
     add_picture(app, picture_, scene_.up);
-    add_effects(app, scene_.effects);
+    add_effects(app, scene_);
+    add_lens(app, scene_);
     add_tree(app, device_.choices.walk);
     add_runs(app, runs_, "make each picture so many times; the time of all of it is the median");
     add_scene_and_build(app, scene_, builder_, device_, device_builder_names());
@@ -35,7 +36,7 @@ class EffectsCommand : public Command {
     frame.camera = picture_.camera;
     frame.runs = runs_;
     frame.effects = scene_.effects;
-    const EffectsReport report = measure_effects(device, scene, frame);
+    const EffectsReport report = measure_effects(device, scene, picture_arrays(scene, frame.effects), frame);
     if (files.talks()) print(text_of(report, frame));
     write_json(files.json, to_json(report, frame));
     return validation_status(device);

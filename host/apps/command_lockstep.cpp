@@ -17,7 +17,8 @@ class LockstepCommand : public Command {
  public:
   void add_options(CLI::App& app) override {
     add_picture(app, picture_, scene_.up);
-    add_effects(app, scene_.effects);
+    add_effects(app, scene_);
+    add_lens(app, scene_);
     add_tone(app, picture_.trace.tone);
     add_intersection(app, picture_.trace);
     add_tree(app, device_.choices.walk);
@@ -31,8 +32,7 @@ class LockstepCommand : public Command {
   int run() override {
     Scene scene = open_scene_of(scene_, builder_, device_, true);
     if (!scene_.effects.turns_off(Effect::alpha)) find_cut_outs(scene);
-    const SceneArrays arrays = scene_arrays(scene, effects_of(scene, scene_.effects));
-    for (const std::string& warning : arrays.image_warnings()) print_note(warning);
+    const SceneArrays arrays = picture_arrays(scene, scene_.effects);
     const TraceOptions& trace = picture_.trace;
     const BuildOptions least = builder_.least_build_options();
     CheckedDevice device = open_device(device_, {true, least, {trace}, arrays.triangle_count()});

@@ -34,7 +34,8 @@ class RenderCommand : public Command {
     app.add_option("--tracer", tracer_)->check(CLI::IsMember({"gpu", "cpu"}))->capture_default_str();
     app.add_flag("--kernels", kernels_, "print the time of every kernel; takes the frame once more");
     add_picture(app, picture_, scene_.up);
-    add_effects(app, scene_.effects);
+    add_effects(app, scene_);
+    add_lens(app, scene_);
     add_tone(app, picture_.trace.tone);
     app.add_flag("--explain", explain_, "say of each effect whether it is on, and what called for it");
     add_refine(app, refine_);
@@ -143,6 +144,10 @@ class RenderCommand : public Command {
       throw InputError(
           "--builder none: alpha is looked at on the way through a tree, which takes another builder "
           "(--effects=-alpha goes without)");
+    if (effects.has(Effect::ambient_occlusion))
+      throw InputError(
+          "--builder none: ambient occlusion is traced through a tree, which takes another builder "
+          "(--effects=-ambient_occlusion goes without)");
   }
 
   // Otherwise instances are flattened: only trees of the device have two levels.
@@ -162,10 +167,11 @@ class RenderCommand : public Command {
   }
 
   FrameReport measured(CheckedDevice* device, const Scene& scene, FrameRuns& frame) const {
-    if (!traces_on_device()) return measure_host_frame(device, scene, frame, print_note);
+    const SceneArrays arrays = picture_arrays(scene, frame.effects);
+    if (!traces_on_device()) return measure_host_frame(device, scene, arrays, frame, print_note);
     frame.trace = device->picture_options(frame.trace, static_cast<std::uint32_t>(scene.indices.size()));
     if (!scene.instances.empty()) frame.trace.walk = Walk::binary;
-    return measure_frame(*device, scene, frame);
+    return measure_frame(*device, scene, arrays, frame);
   }
 
   std::string tracer_ = "gpu";

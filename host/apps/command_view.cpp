@@ -1,5 +1,3 @@
-#include <unistd.h>
-
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -33,7 +31,8 @@ class ViewCommand : public Command {
         ->type_name("PREFIX")
         ->capture_default_str();
     add_view(app, picture_, scene_.up);
-    add_effects(app, scene_.effects);
+    add_effects(app, scene_);
+    add_lens(app, scene_);
     add_tone(app, picture_.trace.tone);
     add_show(app, run_.show);
     add_intersection(app, picture_.trace);
@@ -64,12 +63,7 @@ class ViewCommand : public Command {
     write_json(files.json, to_json(report));
     for (const std::string& message : report.validation_messages)
       std::fprintf(stderr, "validation: %s\n", message.c_str());
-    const int status = report.validation_messages.empty() ? 0 : 1;
-    if (report.work_left) {  // whose thread must not see what it uses end before it
-      std::fflush(stdout);
-      _exit(status);
-    }
-    return status;
+    return report.validation_messages.empty() ? 0 : 1;
   }
 
  private:

@@ -12,6 +12,7 @@
 #include "gpu/device.h"
 #include "measure/progress.h"
 #include "pipeline/interruption.h"
+#include "pipeline/loose_thread.h"
 
 namespace {
 
@@ -33,11 +34,7 @@ int status_after_output(int status) {
   return 1;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  hold_closed_streams();
-  coppice::settle_heap();
+int status_of_command(int argc, char** argv) {
   try {
     coppice::show_loading();
     return status_after_output(coppice::run_command_line(argc, argv));
@@ -52,4 +49,15 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "coppice: %s\n", error.what());
   }
   return 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  hold_closed_streams();
+  coppice::settle_heap();
+  const int status = status_of_command(argc, argv);
+  if (!coppice::has_loose_threads()) return status;
+  std::fflush(nullptr);
+  _exit(status);
 }

@@ -34,15 +34,15 @@ std::optional<BuildOptions> build_of(const BuilderChoice& builder) {
 
 void print_note(const std::string& line) { std::fprintf(stderr, "note: %s\n", line.c_str()); }
 
-void print_warnings(const Scene& scene) {
-  for (const std::string& warning : scene.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+void print_warnings(std::span<const std::string> warnings) {
+  for (const std::string& warning : warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
 }
 
 Scene open_scene_of(const SceneOptions& options, const BuilderChoice& builder, const DeviceSetup& device,
                     bool on_device) {
   Scene scene =
       open_scene_with_room(options, on_device ? &device.options : nullptr, build_of(builder), print_note);
-  print_warnings(scene);
+  print_warnings(scene.warnings);
   return scene;
 }
 
@@ -65,9 +65,19 @@ Scene open_for_effects(const SceneOptions& options, const BuilderChoice& builder
       throw InputError("scene '" + scene.name +
                        "' has instances that move, through which no shadow rays are traced "
                        "(--effects=-shadows goes without)");
+    if (effects.has(Effect::ambient_occlusion) && moves && !scene.motion && !may_stand_still)
+      throw InputError("scene '" + scene.name +
+                       "' has instances that move, through which no occlusion rays are traced "
+                       "(--effects=-ambient_occlusion goes without)");
   }
-  print_warnings(scene);
+  print_warnings(scene.warnings);
   return scene;
+}
+
+SceneArrays picture_arrays(const Scene& scene, const EffectChanges& effects) {
+  SceneArrays arrays = scene_arrays(scene, effects_of(scene, effects));
+  print_warnings(arrays.image_warnings());
+  return arrays;
 }
 
 CheckedDevice open_device(const DeviceSetup& device, const DeviceUse& use) {

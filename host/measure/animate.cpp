@@ -53,7 +53,7 @@ class FrameLoop {
                               frame.vertices_ms, frame.update_ms, frame.wide_ms, frame.trace_ms,
                               frame.total_ms, frame.rebuilt, frame.sah, frame.state.active_count,
                               frame.counts.rays, frame.counts.hits, frame.counts.steps, frame.shadow.rays,
-                              frame.shadow.hits, image_hash(frame.image)});
+                              frame.shadow.hits, frame.occlusion.rays, image_hash(frame.image)});
     last_done_ = now;
     if (runs_.picture) runs_.picture(number, frame.image);
   }
@@ -84,6 +84,7 @@ void split_kernels(CheckedDevice& device, MovingFrames& frames, const AnimateRun
     counts.hits = trace.hits;
     counts.steps = trace.steps;
     counts.shadow = trace.shadow;
+    counts.occlusion = trace.occlusion;
     sums.add(split.steps, split.times, counts);
     events.add(split);
     total_ms += split.times.total_ms;
@@ -98,13 +99,12 @@ MovingOptions moving_options(const CheckedDevice& device, const AnimateRuns& run
                              std::uint32_t morton_bits) {
   return {.build = device.build_options(runs.builder.build_options(morton_bits)),
           .trace = runs.trace,
-          .effects = runs.effects,
           .update = runs.update,
           .tree_cost = runs.tree_cost};
 }
 
-AnimateReport animate(CheckedDevice& device, const Scene& scene, const AnimateRuns& runs) {
-  const SceneArrays arrays = scene_arrays(scene);
+AnimateReport animate(CheckedDevice& device, const Scene& scene, SceneArrays arrays,
+                      const AnimateRuns& runs) {
   AnimateReport report;
   report.scene = scene.name;
   report.builder = runs.builder.name;
@@ -121,7 +121,8 @@ AnimateReport animate(CheckedDevice& device, const Scene& scene, const AnimateRu
   report.frames_per_second = runs.frames_per_second;
   report.update = runs.update;
   report.tree_cost = runs.tree_cost;
-  MovingFrames frames(device.device(), scene, moving_options(device, runs, report.morton_bits));
+  MovingFrames frames(device.device(), scene, arrays, moving_options(device, runs, report.morton_bits));
+  arrays = {};  // the device has them
   report.device_bytes = device_bytes(frames.layout());
   const Films films(scene, runs);
   const InterruptionGuard guard;

@@ -25,7 +25,6 @@ struct AnimateRuns {
   TraceOptions trace{};
   Update update = Update::rebuild;
   bool tree_cost = false;        // the SAH cost of every frame's tree
-  EffectChanges effects{};       // beside what the scene calls for
   std::vector<double> camera{};  // see given_view; empty: the scene's, as it moves
   std::uint32_t first = 0, last = 0;
   double frames_per_second = 30;
@@ -48,6 +47,7 @@ struct AnimatedFrame {
   std::uint32_t active_count;
   std::uint64_t rays, hits, steps;  // of the camera's rays
   std::uint64_t shadow_rays, shadow_hits;
+  std::uint64_t occlusion_rays;
   std::uint64_t hash;  // of the picture
 };
 
@@ -68,8 +68,9 @@ struct AnimateReport {
 };
 
 // Each frame in one submit, the next one told while one is under way. The kernels are compiled before, by the
-// first frame, which then comes again. Throws Interrupted on SIGINT or SIGTERM between two frames.
-AnimateReport animate(CheckedDevice& device, const Scene& scene, const AnimateRuns& runs);
+// first frame, which then comes again. `arrays` are the scene's, with the effects that are wanted. Throws
+// Interrupted on SIGINT or SIGTERM between two frames.
+AnimateReport animate(CheckedDevice& device, const Scene& scene, SceneArrays arrays, const AnimateRuns& runs);
 
 // What a frame of these runs is made with. `morton_bits`: as BuilderChoice::bits_for has them, of the scene.
 MovingOptions moving_options(const CheckedDevice& device, const AnimateRuns& runs, std::uint32_t morton_bits);

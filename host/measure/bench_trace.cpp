@@ -57,12 +57,13 @@ TraceOptions trace_options(const CheckedDevice& device, const BenchOptions& opti
 // The whole chain of a picture of the same rays: camera rays, closest hits, shading, sRGB.
 void add_frame(CheckedDevice& device, const BenchOptions& options, const Scene& scene, Walk walk,
                BenchRow& row) {
-  const FrameReport frame = measure_frame(device, scene,
-                                          {.builder = options.builder,
-                                           .trace = trace_options(device, options, walk),
-                                           .camera = options.camera,
-                                           .runs = options.runs,
-                                           .effects = EffectChanges(no_effects())});
+  const FrameReport frame =
+      measure_frame(device, scene, scene_arrays(scene, effects_of(scene, EffectChanges(no_effects()))),
+                    {.builder = options.builder,
+                     .trace = trace_options(device, options, walk),
+                     .camera = options.camera,
+                     .runs = options.runs,
+                     .effects = EffectChanges(no_effects())});
   if (frame.rays != row.size) throw DeviceError("the picture has other rays than the measurement");
   const double mrays_per_s = static_cast<double>(frame.rays) / frame.trace_ms / 1000;
   row.figures = {{"frame_ms", frame.trace_ms}, {"frame_millions_per_s", mrays_per_s}};

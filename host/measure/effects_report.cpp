@@ -1,6 +1,8 @@
 #include "measure/effects_report.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "measure/table.h"
 
@@ -13,6 +15,13 @@ std::string why(const EffectSet::State& state) {
       state.called_by.empty() ? "nothing calls for it" : "called for by " + state.called_by;
   if (!state.overridden) return called;
   return std::string(state.on ? "turned on" : "turned off") + " by --effects; " + called;
+}
+
+// A line's name and whether it is on, all of the same width.
+std::string named(std::string_view name, const char* on) {
+  std::size_t longest = 0;
+  for (const std::string_view effect : EFFECT_NAMES) longest = std::max(longest, effect.size());
+  return format("%-*s %-3s", static_cast<int>(longest), std::string(name).c_str(), on);
 }
 
 Json state_json(Effect effect, const EffectSet::State& state) {
@@ -49,8 +58,7 @@ std::string explain(const EffectSet& effects) {
   std::string text;
   for (std::size_t i = 0; i < effect_count; ++i) {
     const EffectSet::State& state = effects.of(static_cast<Effect>(i));
-    text += format("%-8s %-3s  %s\n", std::string(EFFECT_NAMES[i]).c_str(), state.on ? "on" : "off",
-                   why(state).c_str());
+    text += named(EFFECT_NAMES[i], state.on ? "on" : "off") + "  " + why(state) + "\n";
   }
   return text;
 }
@@ -69,14 +77,15 @@ std::string text_of(const EffectsReport& report, const FrameRuns& frame) {
       format("%s: %ux%u, %u spp, %llu rays of the camera, %.1f ms on %s\n\n", report.scene.c_str(),
              frame.trace.width, frame.trace.height, frame.trace.samples,
              static_cast<unsigned long long>(report.camera_rays), report.trace_ms, report.device.c_str());
-  text += format("%-8s %-3s %10s %12s %10s %10s  %s\n", "effect", "", "dispatches", "rays", "MB", "ms",
-                 "called for by");
+  text += named("effect", "") +
+          format(" %10s %12s %10s %10s  %s\n", "dispatches", "rays", "MB", "ms", "called for by");
   for (const EffectCost& cost : report.costs) {
     const std::string ms = cost.ms ? format("%.1f", *cost.ms) : "?";
-    text += format("%-8s %-3s %10u %12llu %10.2f %10s  %s\n", std::string(name_of(cost.effect)).c_str(),
-                   cost.state.on ? "on" : "off", cost.state.on ? dispatches(cost.kernels) : cost.own_steps,
-                   static_cast<unsigned long long>(cost.rays), static_cast<double>(cost.bytes) * 1e-6,
-                   ms.c_str(), why(cost.state).c_str());
+    text +=
+        named(name_of(cost.effect), cost.state.on ? "on" : "off") +
+        format(" %10u %12llu %10.2f %10s  %s\n", cost.state.on ? dispatches(cost.kernels) : cost.own_steps,
+               static_cast<unsigned long long>(cost.rays), static_cast<double>(cost.bytes) * 1e-6, ms.c_str(),
+               why(cost.state).c_str());
     if (!cost.kernels.empty()) text += "           adds " + listed(cost.kernels) + "\n";
     if (!cost.instead_of.empty()) text += "           in the place of " + listed(cost.instead_of) + "\n";
   }

@@ -43,8 +43,10 @@ struct EffectsReport {
   std::vector<EffectCost> costs;  // of every effect
 };
 
-// Makes the picture with all that is on, and once more without each. Throws as measure_frame does.
-EffectsReport measure_effects(CheckedDevice& device, const Scene& scene, const FrameRuns& frame);
+// Makes the picture with all that is on, and once more without each. Arrays and what it throws are those of
+// measure_frame.
+EffectsReport measure_effects(CheckedDevice& device, const Scene& scene, const SceneArrays& arrays,
+                              const FrameRuns& frame);
 
 // A line an effect: whether it is on, and what called for it.
 std::string explain(const EffectSet& effects);

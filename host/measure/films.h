@@ -11,17 +11,19 @@ class Films {
  public:
   Films(const Scene& scene, const AnimateRuns& runs)
       : motion_(runs.camera.empty() && scene.camera ? scene.motion.get() : nullptr),
+        lens_(scene.lens),
         trace_(runs.trace),
         still_(make_film(scene, runs.camera, trace_.width, trace_.height, trace_.samples)) {}
 
   Film at(double seconds) const {
     if (!motion_) return still_;
     const std::optional<Camera> camera = pose_at(*motion_, seconds).camera;
-    return camera ? make_film(*camera, trace_.width, trace_.height, trace_.samples) : still_;
+    return camera ? make_film(*camera, lens_, trace_.width, trace_.height, trace_.samples) : still_;
   }
 
  private:
   const Motion* motion_;
+  Lens lens_;
   TraceOptions trace_;
   Film still_;
 };

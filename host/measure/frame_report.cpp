@@ -41,7 +41,8 @@ double mean_samples(const FrameReport& report, const FrameRuns& frame) {
 }
 
 double mrays_per_s(const FrameReport& report) {
-  return static_cast<double>(report.rays + report.shadow.rays) / report.trace_ms / 1000;
+  const std::uint64_t rays = report.rays + report.shadow.rays + report.occlusion.rays + report.bounced.rays;
+  return static_cast<double>(rays) / report.trace_ms / 1000;
 }
 
 }  // namespace
@@ -64,10 +65,10 @@ Json to_json(const FrameReport& report, const Scene& scene, const FrameRuns& fra
                {"rays",
                 {{"primary", report.rays},
                  {"shadow", report.shadow.rays},
-                 {"reflection", 0},
-                 {"refraction", 0},
-                 {"occlusion", 0},
-                 {"diffuse", 0}}},
+                 {"reflection", report.lobes.reflected},
+                 {"refraction", report.lobes.transmitted},
+                 {"occlusion", report.occlusion.rays},
+                 {"diffuse", report.lobes.diffuse}}},
                {"mrays_per_s", mrays_per_s(report)},
                {"effects", names_of_effects(scene, effects_of(scene, frame.effects))},
                {"kernels", to_json(report.kernels)}};
@@ -116,6 +117,14 @@ std::string text_of(const FrameReport& report, const Scene& scene, const FrameRu
     text += format("  shadows  %9llu rays, %llu of them blocked\n",
                    static_cast<unsigned long long>(report.shadow.rays),
                    static_cast<unsigned long long>(report.shadow.hits));
+  if (report.occlusion.rays > 0)
+    text += format("  ambient  %9llu rays, %llu of them blocked\n",
+                   static_cast<unsigned long long>(report.occlusion.rays),
+                   static_cast<unsigned long long>(report.occlusion.hits));
+  if (report.bounced.rays > 0)
+    text += format("  bounces  %9llu rays, %llu of them hit\n",
+                   static_cast<unsigned long long>(report.bounced.rays),
+                   static_cast<unsigned long long>(report.bounced.hits));
   text += text_of(report.shown, scene);
   text += format("  write    %9.1f ms\n", around.write_ms);
   if (!report.kernels.rows.empty() && !build.kernels.rows.empty()) text += text_of(build.kernels);

@@ -220,10 +220,9 @@ void read_picture(const GpuExecutor& executor, const FramePlan& plan, const Film
 
 }  // namespace
 
-FrameReport measure_frame(CheckedDevice& device, const Scene& scene, const FrameRuns& frame) {
-  const SceneArrays arrays = scene_arrays(scene, effects_of(scene, frame.effects));
+FrameReport measure_frame(CheckedDevice& device, const Scene& scene, const SceneArrays& arrays,
+                          const FrameRuns& frame) {
   FrameReport report;
-  for (const std::string& warning : arrays.image_warnings()) device.notes()(warning);
   report.trace_device = device.properties().name + ", " + device.properties().driver;
   report.build = report_for(frame.builder, scene, arrays.triangles, device.notes());
   FrameOptions options{.trace = frame.trace};
@@ -266,6 +265,9 @@ FrameReport measure_frame(CheckedDevice& device, const Scene& scene, const Frame
   report.hits = counts.hits;
   report.steps = counts.steps;
   report.shadow = {counts.shadow.rays, counts.shadow.hits, counts.shadow.steps};
+  report.occlusion = {counts.occlusion.rays, counts.occlusion.hits, counts.occlusion.steps};
+  report.bounced = {counts.paths.rays, counts.paths.hits, counts.paths.steps};
+  report.lobes = counts.paths.lobes;
   read_picture(executor, plan, film, report);
   report.build.device_bytes = device_bytes(layout);
   if (plan.build) describe_device_build(device, executor, *plan.build, report.build);

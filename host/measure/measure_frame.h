@@ -9,6 +9,7 @@
 #include "measure/refine.h"
 #include "pipeline/checked_device.h"
 #include "pipeline/trace_plan.h"
+#include "render/scene_arrays.h"
 #include "render/show.h"
 #include "scene/effect_set.h"
 
@@ -41,6 +42,9 @@ struct FrameReport {
   double trace_ms = 0;
   std::uint64_t rays = 0, hits = 0, steps = 0;  // of the camera's rays
   TraceCounts shadow;                           // of shadow rays
+  TraceCounts occlusion;                        // of occlusion rays
+  TraceCounts bounced;                          // of paths behind those of the camera
+  LobeCounts lobes;                             // the same by the lobe of the surface
   std::string trace_device;                     // name and driver
   bool walks_wide = false;
   KernelTable kernels;         // of the trace, on a device; of a refined one of one more sample
@@ -52,12 +56,13 @@ struct FrameReport {
 
 // Builds in one submit and traces in as many as keep each short, with nothing but times read back in between;
 // with a CPU builder its tree is uploaded before. Throws Interrupted on SIGINT or SIGTERM between two
-// submits.
-FrameReport measure_frame(CheckedDevice& device, const Scene& scene, const FrameRuns& frame);
+// submits. `arrays` are the scene's, with the effects that the frame says.
+FrameReport measure_frame(CheckedDevice& device, const Scene& scene, const SceneArrays& arrays,
+                          const FrameRuns& frame);
 
 // Traces by the independent CPU tracer; shades by the twins. With a builder on the device `device` builds the
 // tree. Throws Interrupted as well.
-FrameReport measure_host_frame(CheckedDevice* device, const Scene& scene, const FrameRuns& frame,
-                               const Note& note);
+FrameReport measure_host_frame(CheckedDevice* device, const Scene& scene, const SceneArrays& arrays,
+                               const FrameRuns& frame, const Note& note);
 
 }  // namespace coppice

@@ -39,23 +39,25 @@ PassedHits passed_hits(const Args& args) {
 template <class Args>
 void trace_closest_on_host(const Args& args, const Bvh& bvh, std::span<const Triangle> triangles,
                            FrameReport& report) {
-  const std::span<const Ray> rays(&args.rays[0], args.ray_count);
-  const std::span<Hit> hits(&args.hits[0], args.ray_count);
+  const bool bounced = args.count_at.value != 0;
+  const std::uint32_t count = bounced ? args.count_at[0] : args.ray_count;
+  const std::span<const Ray> rays(&args.rays[0], count);
+  const std::span<Hit> hits(&args.hits[0], count);
   trace_all(bvh.nodes, triangles, rays, hits, passed_hits(args));
-  report.rays += rays.size();
-  report.hits += count_hits(hits);
+  (bounced ? report.bounced.rays : report.rays) += rays.size();
+  (bounced ? report.bounced.hits : report.hits) += count_hits(hits);
 }
 
-// Of shadow rays: whether there is a closest hit.
+// Of shadow or occlusion rays: whether there is a closest hit.
 template <class Args>
 void trace_any_on_host(const Args& args, const Bvh& bvh, std::span<const Triangle> triangles,
-                       FrameReport& report) {
+                       TraceCounts& counts) {
   const std::span<const Ray> rays(&args.rays[0], args.count_at[0]);
   std::vector<Hit> hits(rays.size());
   trace_all(bvh.nodes, triangles, rays, hits, passed_hits(args));
   for (std::size_t i = 0; i < hits.size(); ++i) args.any_hits[i] = hits[i].triangle != NO_TRIANGLE;
-  report.shadow.rays += rays.size();
-  report.shadow.hits += count_hits(hits);
+  counts.rays += rays.size();
+  counts.hits += count_hits(hits);
 }
 
 // The device's chain, with the independent tracer in the place of its tracer.
@@ -74,12 +76,18 @@ struct HostTrace {
       else if (const auto* const past_holes = args_of(step, stages::trace_closest_alpha))
         trace_closest_on_host(*past_holes, bvh, triangles, report);
       else if (const auto* const any = args_of(step, stages::trace_any))
-        trace_any_on_host(*any, bvh, triangles, report);
+        trace_any_on_host(*any, bvh, triangles, is_occlusion(*any) ? report.occlusion : report.shadow);
       else if (const auto* const any_past_holes = args_of(step, stages::trace_any_alpha))
-        trace_any_on_host(*any_past_holes, bvh, triangles, report);
+        trace_any_on_host(*any_past_holes, bvh, triangles,
+                          is_occlusion(*any_past_holes) ? report.occlusion : report.shadow);
       else
         executor.run(step);
     }
+  }
+
+  bool is_occlusion(const TraceAnyArgs& args) const {
+    const Slot<TraceCounters>& counters = plan.trace.lights.occlusion_counters;
+    return counters.count > 0 && executor.chain().at(counters).value == args.counters.value;
   }
 
   // In pieces, so that Ctrl-C is heard soon. Returns the seconds they took, and calls `after` with the work
@@ -155,11 +163,9 @@ void trace_on_host(CpuExecutor& executor, const FramePlan& plan, const Bvh& bvh,
 
 }  // namespace
 
-FrameReport measure_host_frame(CheckedDevice* device, const Scene& scene, const FrameRuns& frame,
-                               const Note& note) {
-  const SceneArrays arrays = scene_arrays(scene, effects_of(scene, frame.effects));
+FrameReport measure_host_frame(CheckedDevice* device, const Scene& scene, const SceneArrays& arrays,
+                               const FrameRuns& frame, const Note& note) {
   FrameReport report;
-  for (const std::string& warning : arrays.image_warnings()) note(warning);
   report.trace_device = "host CPU";
   report.build = report_for(frame.builder, scene, arrays.triangles, note);
   Bvh bvh;
@@ -192,6 +198,8 @@ FrameReport measure_host_frame(CheckedDevice* device, const Scene& scene, const 
                                                        {bvh.nodes, {}})));
   trace_on_host(executor, plan, bvh, arrays.triangles, frame.refine, film, report);
   report.image = executor.read(plan.trace.image);
+  if (plan.trace.paths.lobe_counters.count > 0)
+    report.lobes = counts_of(executor.read(plan.trace.paths.lobe_counters)[0]);
   if (plan.trace.options.keep_radiance)
     report.radiance = mean_radiance(executor.read(plan.trace.radiance), film.width, film.height, film.samples,
                                     executor.read(plan.trace.noise.sample_counts));

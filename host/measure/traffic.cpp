@@ -13,9 +13,21 @@ RunCounts counts_of_trace(const TraceCounters& counters) {
 
 RunCounts counts_of_picture(const GpuExecutor& executor, const TracePlan& plan) {
   RunCounts counts = counts_of_trace(executor.read(plan.counters)[0]);
-  if (plan.lights.counters.count == 0) return counts;
-  const TraceCounts shadow = counts_of(executor.read(plan.lights.counters)[0]);
-  counts.shadow = {counts.rays * plan.options.lights.shadows, shadow.rays, shadow.hits, shadow.steps};
+  const auto secondary = [&](const Slot<TraceCounters>& slot, std::uint64_t lights) {
+    if (slot.count == 0) return RunCounts::Secondary{};
+    const TraceCounts left = counts_of(executor.read(slot)[0]);
+    return RunCounts::Secondary{counts.rays * lights, left.rays, left.hits, left.steps};
+  };
+  counts.shadow = secondary(plan.lights.counters, plan.options.lights.shadows);
+  counts.occlusion = secondary(plan.lights.occlusion_counters, 1);
+  if (plan.options.paths.any() && plan.options.show == SHOW_COLOR) {
+    const TraceCounts bounced = counts_of(executor.read(plan.paths.bounce_counters)[0]);
+    const TraceCounts lit = counts_of(executor.read(plan.paths.light_counters)[0]);
+    const std::uint64_t bounces = plan.options.paths.bounces;
+    counts.paths = {counts.rays * bounces, bounced.rays, bounced.hits, bounced.steps,
+                    counts_of(executor.read(plan.paths.lobe_counters)[0])};
+    counts.shadow = {counts.rays * (bounces + 1), lit.rays, lit.hits, lit.steps};
+  }
   return counts;
 }
 

@@ -13,7 +13,7 @@ namespace coppice {
 // The counts behind the words of the device.
 RunCounts counts_of_trace(const TraceCounters& counters);
 
-// The same of a picture's rays, shadow rays among them.
+// The same of a picture's rays, shadow and occlusion rays among them.
 RunCounts counts_of_picture(const GpuExecutor& executor, const TracePlan& plan);
 
 // Bytes that a step moves by its stage's model, "cost" in docs/kernels.md: what must be read and written at

@@ -1,10 +1,10 @@
 #include "pipeline/check_chain.h"
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 
 #include "pipeline/batch.h"
+#include "pipeline/check_inputs.h"
 #include "pipeline/check_moving.h"
 #include "pipeline/refit.h"
 #include "pipeline/scan_plan.h"
@@ -18,8 +18,6 @@ namespace {
 
 // Several tiles of every stage, and little work.
 constexpr std::uint32_t check_triangles = 26000;
-// A small picture, packets of which go the same way, and others that do not.
-constexpr std::uint32_t picture_edge = 16, other_rays = 64;
 constexpr std::uint32_t brute_force_rays = 64;
 constexpr std::uint32_t check_words = 3 * SCAN_TILE * 4 + 5;
 constexpr std::uint32_t batch_trees = 50;
@@ -30,58 +28,6 @@ constexpr double check_limit_seconds = 60;
 constexpr const char* wrong_tree = "computes a wrong tree";
 constexpr const char* wrong_refit = "refits a tree wrong";
 constexpr const char* wrong_hits = "finds wrong hits";
-
-std::vector<uint> random_words(std::size_t count) {
-  CheckRandom random;
-  std::vector<uint> words(count);
-  for (uint& word : words) word = random.next_word() ^ random.next_word() >> 16;
-  return words;
-}
-
-std::vector<Triangle> scattered_triangles() {
-  CheckRandom random;
-  std::vector<Triangle> triangles(check_triangles);
-  for (Triangle& t : triangles) {
-    t.a = random.next_vec3();
-    t.b = t.a + random.next_vec3() * 0.01f;
-    t.c = t.a + random.next_vec3() * 0.01f;
-  }
-  return triangles;
-}
-
-// A tree of boxes in a row: of the two children of a node the first is a leaf.
-std::vector<Node> chain_of_boxes() {
-  constexpr std::uint32_t last = chain_leaves - 1;
-  // All boxes from this one on.
-  const auto rest = [](std::uint32_t box) {
-    const auto first = static_cast<float>(box);
-    return Node{{first, 0, 0}, box == last ? box : 2 * box + 1, {chain_leaves, 1, 1}, last - box};
-  };
-  std::vector<Node> nodes = {rest(0)};
-  for (std::uint32_t box = 0; box < last; ++box) {
-    const auto first = static_cast<float>(box);
-    nodes.push_back({{first, 0, 0}, box, {first + 1, 1, 1}, 0});
-    nodes.push_back(rest(box + 1));
-  }
-  return nodes;
-}
-
-std::vector<Ray> check_rays() {
-  constexpr float far = std::numeric_limits<float>::infinity();
-  CheckRandom random;
-  std::vector<Ray> rays;
-  for (std::uint32_t y = 0; y < picture_edge; ++y) {
-    for (std::uint32_t x = 0; x < picture_edge; ++x) {
-      const vec3 through = {static_cast<float>(x) / picture_edge, static_cast<float>(y) / picture_edge, 0};
-      rays.push_back({{0.5f, 0.5f, -1}, 0, through - vec3(0.5f, 0.5f, -1), far});
-    }
-  }
-  for (std::uint32_t i = 0; i < other_rays; ++i) {
-    const vec3 origin = random.next_vec3();
-    rays.push_back({origin, 0, random.next_vec3() - vec3(0.5f), far});
-  }
-  return rays;
-}
 
 class Check {
  public:
@@ -131,7 +77,7 @@ class Check {
 
   // Of more levels than have dispatches of their own.
   void add_deep_wide() {
-    const std::vector<Node> nodes = chain_of_boxes();
+    const std::vector<Node> nodes = chain_of_boxes(chain_leaves);
     BuildState state{};
     state.active_count = chain_leaves;
     TreeSlots tree = plan_tree(layout(), chain_leaves, nodes.size());
@@ -276,7 +222,7 @@ class Check {
   BuildOptions options_;
   std::uint32_t max_turns_;
   CheckChain chain_;
-  const std::vector<Triangle> triangles_ = scattered_triangles();
+  const std::vector<Triangle> triangles_ = scattered_triangles(check_triangles);
   TreeSlots tree_;
 };
 

@@ -12,24 +12,6 @@
 
 namespace coppice {
 
-// The same numbers on every run: a linear congruential generator.
-class CheckRandom {
- public:
-  std::uint32_t next_word() { return state_ = state_ * 1664525u + 1013904223u; }
-  // A multiple of 2^-24 in [0, 1).
-  float next() { return static_cast<float>(next_word() >> 8) * 0x1p-24f; }
-  vec3 next_vec3() {
-    const float x = next(), y = next();
-    return {x, y, next()};
-  }
-  // From -1 to 1.
-  float next_signed() { return 2 * next() - 1; }
-  vec3 next_signed_vec3() { return 2.0f * next_vec3() - vec3(1); }
-
- private:
-  std::uint32_t state_ = 1;
-};
-
 // A chain that the device runs and the twins run, and what both must leave alike.
 class CheckChain {
  public:

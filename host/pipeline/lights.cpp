@@ -62,6 +62,30 @@ void append_shadow_rays(Chain& chain, const TreeSlots& tree, const LightSlots& s
             groups_of(rays.count, SHADOW_RAYS_GROUP));
 }
 
+// As many rays as marks, into the queue that shadow rays have had.
+void append_occlusion_rays(Chain& chain, const TreeSlots& tree, const LightSlots& slots,
+                           const LitRays& rays) {
+  const auto marks = chain.at(ScanPlan::words_of(slots.marks));
+  const auto ambient = chain.at(slots.ambient);
+  chain.run(stages::occlusion_marks,
+            {rays.material_index, rays.materials, ambient, rays.hits, marks, rays.count, 0},
+            groups_of(rays.count, OCCLUSION_MARKS_GROUP));
+  append_scan(chain, scan_of(slots, tree, rays.count));
+  chain.run(stages::occlusion_rays,
+            {rays.triangles, ambient, rays.rays, rays.hits, marks, chain.at(ScanPlan::words_of(slots.places)),
+             rays.pixels, chain.at(slots.shadow_rays), chain.at(slots.shadow_count), rays.first_ray,
+             rays.count, rays.sample_index, 0},
+            groups_of(rays.count, OCCLUSION_RAYS_GROUP));
+}
+
+void append_ambient(Chain& chain, const LightSlots& slots, const LitRays& rays) {
+  chain.run(stages::shade_ambient,
+            {rays.material_index, rays.materials, chain.at(slots.ambient), rays.hits,
+             chain.at(ScanPlan::words_of(slots.marks)), chain.at(ScanPlan::words_of(slots.places)),
+             chain.at(slots.any_hits), rays.radiance, rays.count, 0},
+            groups_of(rays.count, SHADE_AMBIENT_GROUP));
+}
+
 }  // namespace
 
 LightSlots plan_lights(Layout& layout, const LightCounts& counts, std::uint32_t band_rays) {
@@ -69,16 +93,18 @@ LightSlots plan_lights(Layout& layout, const LightCounts& counts, std::uint32_t 
     throw std::invalid_argument(std::to_string(counts.lights) + " lights are more than " +
                                 std::to_string(MAX_LIGHTS));
   LightSlots slots;
-  if (counts.lights == 0) return slots;
-  slots.sources = layout.add<LightSource>("lights", counts.lights);
-  if (counts.shadows == 0) return slots;
+  if (counts.lights > 0) slots.sources = layout.add<LightSource>("lights", counts.lights);
+  if (counts.shadows == 0 && !counts.occlusion) return slots;
   slots.marks = layout.add<uvec4>("shadow_marks", scan_quads(band_rays));
   slots.places = layout.add<uvec4>("shadow_places", scan_quads(band_rays));
   slots.scan_status = layout.add<uint>("shadow_scan_status", scan_status_words(band_rays));
   slots.shadow_rays = layout.add<Ray>("shadow_rays", band_rays);
   slots.shadow_count = layout.add<uint>("shadow_count", 1);
   slots.any_hits = layout.add<uint>("shadow_hits", band_rays);
-  slots.counters = layout.add<TraceCounters>("shadow_counters", 1);
+  if (counts.shadows > 0) slots.counters = layout.add<TraceCounters>("shadow_counters", 1);
+  if (!counts.occlusion) return slots;
+  slots.ambient = layout.add<AmbientLight>("ambient_light", 1);
+  slots.occlusion_counters = layout.add<TraceCounters>("occlusion_counters", 1);
   return slots;
 }
 
@@ -95,6 +121,11 @@ void append_lights(Chain& chain, const TreeSlots& tree, const LightSlots& slots,
     append_any_hits(chain, tree, queue, rays.count, options);
     append_shading(chain, slots, rays, light, 1, true, counts.points);
   }
+  if (!counts.occlusion) return;
+  queue.counters = slots.occlusion_counters;
+  append_occlusion_rays(chain, tree, slots, rays);
+  append_any_hits(chain, tree, queue, rays.count, options);
+  append_ambient(chain, slots, rays);
 }
 
 }  // namespace coppice

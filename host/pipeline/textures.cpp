@@ -1,5 +1,7 @@
 #include "pipeline/textures.h"
 
+#include "stages/stages.h"
+
 namespace coppice {
 
 TextureSlots plan_textures(Layout& layout, const TextureCounts& counts, std::uint32_t triangle_count,
@@ -14,6 +16,14 @@ TextureSlots plan_textures(Layout& layout, const TextureCounts& counts, std::uin
   slots.corners = layout.add<CornerAttributes>("corners", triangle_count);
   slots.hit_materials = layout.add<SurfaceMaterial>("hit_materials", band_rays);
   return slots;
+}
+
+void append_textures(Chain& chain, const TextureSlots& slots, const TexturedRays& rays) {
+  chain.run(stages::texture_hits,
+            {rays.film, rays.triangles, rays.material_index, chain.at(slots.materials), chain.at(slots.maps),
+             chain.at(slots.headers), chain.at(slots.texels), chain.at(slots.srgb_to_linear),
+             chain.at(slots.corners), rays.rays, rays.hits, rays.hit_materials, rays.count_at, rays.count, 0},
+            groups_of(rays.count, TEXTURE_HITS_GROUP));
 }
 
 }  // namespace coppice

@@ -30,4 +30,19 @@ struct TextureSlots {
 TextureSlots plan_textures(Layout& layout, const TextureCounts& counts, std::uint32_t triangle_count,
                            std::uint32_t material_count, std::uint32_t band_rays);
 
+// Rays, what they have hit, and what hits name.
+struct TexturedRays {
+  FilmBuffer film;
+  TriangleBuffer triangles;
+  UintBuffer material_index;
+  RayBuffer rays;
+  HitBuffer hits;
+  SurfaceMaterialBuffer hit_materials;  // out
+  UintBuffer count_at;                  // null: all `count` rays
+  std::uint32_t count;
+};
+
+// The material of each hit.
+void append_textures(Chain& chain, const TextureSlots& slots, const TexturedRays& rays);
+
 }  // namespace coppice

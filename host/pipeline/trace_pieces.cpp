@@ -75,8 +75,8 @@ void TracePieces::open_range(Chain& chain, std::uint64_t work) {
   chain.run(stages::camera_rays,
             {chain.at(plan_.film), chain.at(plan_.rays, range_.first), chain.at(plan_.hits, range_.first),
              address_or_null(chain, plan_.traced_pixels, band_first_ + range_.first),
-             band_first_ + range_.first, range_.count, sample_, 0},
-            groups_of(range_.count, CAMERA_RAYS_GROUP), {plan_.traced_pixels.count > 0});
+             band_first_ + range_.first, range_.count, sample_, plan_.options.lens},
+            groups_of(range_.count, CAMERA_RAYS_GROUP), {plan_.traced_pixels.count > 0, plan_.options.lens});
 }
 
 void TracePieces::append_traced_pixels(Chain& chain) const {
@@ -119,16 +119,18 @@ TracePieces::Surfaces TracePieces::textured_surfaces(const Chain& chain) const {
   return result;
 }
 
-void TracePieces::append_textures(Chain& chain) const {
+void TracePieces::append_hit_textures(Chain& chain) const {
   if (plan_.options.textures.textures == 0) return;
-  const TextureSlots& slots = plan_.textures;
   const auto [triangles, material_index, materials] = surfaces(chain);
-  chain.run(stages::texture_hits,
-            {chain.at(plan_.film), triangles, material_index, chain.at(slots.materials), chain.at(slots.maps),
-             chain.at(slots.headers), chain.at(slots.texels), chain.at(slots.srgb_to_linear),
-             chain.at(slots.corners), chain.at(plan_.rays, range_.first), chain.at(plan_.hits, range_.first),
-             chain.at(slots.hit_materials, range_.first), range_.count, 0},
-            groups_of(range_.count, TEXTURE_HITS_GROUP));
+  append_textures(chain, plan_.textures,
+                  {chain.at(plan_.film),
+                   triangles,
+                   material_index,
+                   chain.at(plan_.rays, range_.first),
+                   chain.at(plan_.hits, range_.first),
+                   chain.at(plan_.textures.hit_materials, range_.first),
+                   {},
+                   range_.count});
 }
 
 void TracePieces::append_shade(Chain& chain, Vec3Buffer radiance) const {
@@ -137,17 +139,30 @@ void TracePieces::append_shade(Chain& chain, Vec3Buffer radiance) const {
       stages::shade,
       {triangles, material_index, materials, chain.at(plan_.lighting), chain.at(plan_.rays, range_.first),
        chain.at(plan_.hits, range_.first), radiance, range_.count, summed_samples()},
-      groups_of(range_.count, SHADE_GROUP),
-      {plan_.options.directional_light && plan_.options.lights.lights == 0});
+      groups_of(range_.count, SHADE_GROUP), {plan_.options.directional_light && !plan_.options.lights.any()});
 }
 
 void TracePieces::append_all_lights(Chain& chain, Vec3Buffer radiance) const {
-  if (plan_.options.lights.lights == 0) return;
+  if (!plan_.options.lights.any()) return;
   const auto [triangles, material_index, materials] = textured_surfaces(chain);
   append_lights(chain, tree_, plan_.lights,
                 {triangles, material_index, materials, chain.at(plan_.rays, range_.first),
-                 chain.at(plan_.hits, range_.first), radiance, range_.count, plan_.filter.alpha},
+                 chain.at(plan_.hits, range_.first), radiance, range_.count,
+                 address_or_null(chain, plan_.traced_pixels, band_first_ + range_.first),
+                 band_first_ + range_.first, sample_,
+                 plan_.filter.alpha},
                 plan_.options);
+}
+
+void TracePieces::append_paths_of(Chain& chain, Vec3Buffer radiance) const {
+  const auto [triangles, material_index, materials] = surfaces(chain);
+  append_paths(chain, tree_, plan_.paths, plan_.textures,
+               {chain.at(plan_.film), triangles, material_index, chain.at(plan_.rays, range_.first),
+                chain.at(plan_.hits, range_.first), radiance, chain.at(plan_.lighting),
+                address_or_null(chain, plan_.traced_pixels, band_first_ + range_.first),
+                band_first_ + range_.first, range_.count, summed_samples(), sample_,
+                plan_.filter.alpha},
+               plan_.options);
 }
 
 void TracePieces::append_show(Chain& chain, Vec3Buffer radiance) const {
@@ -181,9 +196,13 @@ void TracePieces::append_radiance(Chain& chain) const {
   if (options.show != SHOW_COLOR) {
     append_show(chain, radiance);
   } else {
-    append_textures(chain);
-    append_shade(chain, radiance);
-    append_all_lights(chain, radiance);
+    if (options.paths.any()) {
+      append_paths_of(chain, radiance);
+    } else {
+      append_hit_textures(chain);
+      append_shade(chain, radiance);
+      append_all_lights(chain, radiance);
+    }
   }
   if (options.keep_noise)
     append_sample(chain, plan_.noise, plan_.radiance,
@@ -210,6 +229,10 @@ std::uint64_t TracePieces::append(Chain& chain, std::uint64_t work) {
   if (!cleared_) chain.clear(plan_.counters);
   if (!cleared_) chain.clear(plan_.show.range);
   if (!cleared_) chain.clear(plan_.lights.counters);
+  if (!cleared_) chain.clear(plan_.lights.occlusion_counters);
+  if (!cleared_) chain.clear(plan_.paths.bounce_counters);
+  if (!cleared_) chain.clear(plan_.paths.light_counters);
+  if (!cleared_) chain.clear(plan_.paths.lobe_counters);
   cleared_ = true;
   std::uint64_t appended = 0;
   while (!done() && has_room(tree_, plan_.options, appended, work)) {

@@ -112,7 +112,8 @@ class TracePieces {
   Surfaces textured_surfaces(const Chain& chain) const;
   void append_pixels(Chain& chain) const;
   void append_traced_pixels(Chain& chain) const;
-  void append_textures(Chain& chain) const;
+  void append_hit_textures(Chain& chain) const;
+  void append_paths_of(Chain& chain, Vec3Buffer radiance) const;
   void append_radiance(Chain& chain) const;
   void append_shade(Chain& chain, Vec3Buffer radiance) const;
   void append_all_lights(Chain& chain, Vec3Buffer radiance) const;

@@ -111,8 +111,9 @@ ShowSlots plan_show(Layout& layout, const TreeSlots& tree, uint view) {
 float ToneMapping::exposure() const { return static_cast<float>(std::exp2(stops)); }
 
 bool keeps_radiance(const TraceOptions& options) {
-  return options.samples > 1 || options.show != SHOW_COLOR || options.lights.lights > 0 ||
-         options.textures.textures > 0 || options.tone.changes() || keeps_whole_radiance(options);
+  return options.samples > 1 || options.show != SHOW_COLOR || options.lights.any() ||
+         options.textures.textures > 0 || options.lens || options.paths.any() || options.tone.changes() ||
+         keeps_whole_radiance(options);
 }
 
 bool keeps_whole_radiance(const TraceOptions& options) { return options.keep_radiance || options.keep_noise; }
@@ -215,6 +216,7 @@ TracePlan plan_trace(Layout& layout, const TreeSlots& tree, std::uint32_t materi
     plan.filter.alpha = plan_alpha(layout, options.alpha, tree.triangle_count);
     plan.textures =
         plan_textures(layout, options.textures, tree.triangle_count, material_count, plan.band_rays);
+    plan.paths = plan_paths(layout, options.paths, tree.triangle_count, material_count, plan.band_rays);
   }
   if (options.show != SHOW_COLOR) plan.show = plan_show(layout, tree, options.show);
   if (options.show == SHOW_STEPS) plan.ray_steps = layout.add<uint>("ray_steps", plan.band_rays);

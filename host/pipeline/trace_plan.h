@@ -6,6 +6,7 @@
 #include "interface/show.h"
 #include "pipeline/build_plan.h"
 #include "pipeline/lights.h"
+#include "pipeline/paths.h"
 #include "pipeline/ray_filter.h"
 #include "pipeline/refine.h"
 #include "pipeline/textures.h"
@@ -39,6 +40,8 @@ struct TraceOptions {
   bool directional_light = true;    // what the scene calls for
   LightCounts lights{};             // of colours
   TextureCounts textures{};         // of colours
+  bool lens = false;                // of colours: rays go through that of the film
+  PathCounts paths{};               // of colours
   AlphaCounts alpha{};              // of colours; not by brute force
   std::uint32_t show = SHOW_COLOR;  // SHOW_; brute force has no steps
   bool keep_hits = false;           // the rays of the last sample and their hits are asked for
@@ -56,8 +59,8 @@ struct TraceOptions {
 // order of visits does not show.
 bool can_trace_wide(const TraceOptions& options);
 
-// Whether samples or lights are added up before they are pixels, what they see is not colour, tones are
-// mapped, or radiance is asked for.
+// Whether samples or lights are added up before they are pixels, what they see is not colour, rays are not
+// those of pixels' centres, tones are mapped, or radiance is asked for.
 bool keeps_radiance(const TraceOptions& options);
 
 // Whether it is kept of the whole picture, not of a band.
@@ -110,6 +113,7 @@ struct TracePlan : RaySlots {
   Slot<uint> traced_pixels;  // only these of the picture, by their places; empty: all
   LightSlots lights;
   TextureSlots textures;
+  PathSlots paths;
   ShowSlots show;
 };
 

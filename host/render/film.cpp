@@ -4,6 +4,7 @@
 #include <cfloat>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
@@ -18,7 +19,17 @@ View choose_view(const Scene& scene, std::span<const double> given, std::uint32_
 
 namespace {
 
-Film film_of(const View& view, std::uint32_t width, std::uint32_t height, std::uint32_t samples) {
+// Focus at the target, if at nothing else.
+void add_lens(Film& film, const View& view, const Lens& lens) {
+  const double radius = double{lens.aperture} / 2;
+  const double focus = lens.focus > 0 ? double{lens.focus} : glm::length(view.target - view.eye);
+  film.lens_right = view.right * radius;
+  film.lens_down = view.down * radius;
+  film.per_focus = static_cast<float>(std::min(1 / focus, double{FLT_MAX}));
+}
+
+Film film_of(const View& view, const Lens& lens, std::uint32_t width, std::uint32_t height,
+             std::uint32_t samples) {
   const double half_height = std::tan(glm::radians(view.vertical_fov_degrees) / 2);
   const double half_width = half_height * width / height;
   Film film{};
@@ -29,6 +40,7 @@ Film film_of(const View& view, std::uint32_t width, std::uint32_t height, std::u
   film.corner = view.forward - view.right * half_width - view.down * half_height;
   film.right = view.right * (2 * half_width / width);
   film.down = view.down * (2 * half_height / height);
+  add_lens(film, view, lens);
   return film;
 }
 
@@ -36,11 +48,12 @@ Film film_of(const View& view, std::uint32_t width, std::uint32_t height, std::u
 
 Film make_film(const Scene& scene, std::span<const double> given, std::uint32_t width, std::uint32_t height,
                std::uint32_t samples) {
-  return film_of(choose_view(scene, given, width, height), width, height, samples);
+  return film_of(choose_view(scene, given, width, height), scene.lens, width, height, samples);
 }
 
-Film make_film(const Camera& camera, std::uint32_t width, std::uint32_t height, std::uint32_t samples) {
-  return film_of(view_of(camera), width, height, samples);
+Film make_film(const Camera& camera, const Lens& lens, std::uint32_t width, std::uint32_t height,
+               std::uint32_t samples) {
+  return film_of(view_of(camera), lens, width, height, samples);
 }
 
 std::vector<vec3> mean_radiance(std::span<const vec3> sums, std::uint32_t width, std::uint32_t height,

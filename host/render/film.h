@@ -13,10 +13,11 @@ namespace coppice {
 View choose_view(const Scene& scene, std::span<const double> camera, std::uint32_t width,
                  std::uint32_t height);
 
-// Of that view.
+// Of that view, and the lens of the scene.
 Film make_film(const Scene& scene, std::span<const double> camera, std::uint32_t width, std::uint32_t height,
                std::uint32_t samples);
-Film make_film(const Camera& camera, std::uint32_t width, std::uint32_t height, std::uint32_t samples);
+Film make_film(const Camera& camera, const Lens& lens, std::uint32_t width, std::uint32_t height,
+               std::uint32_t samples);
 
 // Radiance summed over so many samples a pixel (or its own count, where there are counts), in the order of
 // FILM_STRIP, as means in rows from top to bottom. The quotients are those of `resolve`.

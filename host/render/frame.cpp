@@ -13,6 +13,8 @@ namespace {
 FramePlan plan_instanced_frame(Layout& layout, const SceneArrays& scene, const FrameOptions& options) {
   if (options.trace.lights.shadows > 0)
     throw std::invalid_argument("shadows are traced through trees of one level");
+  if (options.trace.lights.occlusion)
+    throw std::invalid_argument("occlusion is traced through trees of one level");
   if (options.trace.textures.textures > 0)
     throw std::invalid_argument("textures lie on triangles of one level");
   if (options.trace.alpha.maps > 0) throw std::invalid_argument("triangles of one level let rays through");
@@ -45,9 +47,14 @@ FramePlan plan_frame(Layout& layout, const SceneArrays& scene, const FrameOption
   const bool colours = options.trace.show == SHOW_COLOR;
   options.trace.lights = colours ? scene.light_counts : LightCounts{};
   options.trace.textures = colours ? scene.texture_counts() : TextureCounts{};
+  options.trace.lens = colours && scene.lens;
+  if ((options.trace.lights.shadows > 0 || options.trace.lights.occlusion) &&
+      options.trace.walk == Walk::brute_force)
+    throw std::invalid_argument("shadows and occlusion are traced through a tree");
+  options.trace.paths = colours ? scene.paths.counts : PathCounts{};
+  if (options.trace.paths.any() && options.trace.walk == Walk::brute_force)
+    throw std::invalid_argument("paths are traced through a tree");
   options.trace.alpha = colours ? scene.alpha_counts() : AlphaCounts{};
-  if (options.trace.lights.shadows > 0 && options.trace.walk == Walk::brute_force)
-    throw std::invalid_argument("shadows are traced through a tree");
   if (options.trace.alpha.maps > 0 && options.trace.walk == Walk::brute_force)
     throw std::invalid_argument("alpha is looked at by what walks through a tree");
   if (!scene.mesh_index.empty()) return plan_instanced_frame(layout, scene, options);

@@ -33,7 +33,7 @@ struct FramePlan {
 
 // Lights, textures and alpha are those of the scene, whatever the options say. Throws LayoutError if a slot
 // does not fit a block, and std::invalid_argument for instances with a tree of the host, a wide one, shadows,
-// textures or alpha, and for shadows or alpha without a tree.
+// occlusion, textures or alpha, and for shadows, occlusion or alpha without a tree.
 FramePlan plan_frame(Layout& layout, const SceneArrays& scene, const FrameOptions& options);
 
 // The parts of a frame: nothing where there is nothing to do.
@@ -64,6 +64,16 @@ void upload_alpha(Executor& executor, const AlphaSlots& slots, const AlphaArrays
   executor.upload(slots.texels, std::span<const uint>(alpha.texels));
 }
 
+template <class Executor>
+void upload_paths(Executor& executor, const PathSlots& slots, const PathArrays& paths) {
+  executor.upload(slots.materials, std::span<const SurfaceMaterial>(paths.materials));
+  executor.upload(slots.path_materials, std::span<const PathMaterial>(paths.path_materials));
+  executor.upload(slots.ambient, std::span<const vec3>(&paths.ambient, 1));
+  executor.upload(slots.lights, std::span<const LightSource>(paths.lights));
+  executor.upload(slots.choices, std::span<const LightChoice>(paths.choices));
+  executor.upload(slots.emitter_probability, std::span<const float>(paths.emitter_probability));
+}
+
 // Uploads all that a build and a trace read, through any executor.
 template <class Executor>
 void upload_frame(Executor& executor, const TreeSlots& tree, const TracePlan& trace, const SceneArrays& scene,
@@ -77,8 +87,11 @@ void upload_frame(Executor& executor, const TreeSlots& tree, const TracePlan& tr
   executor.upload(trace.srgb_thresholds, std::span<const uint>(thresholds));
   if (trace.lights.sources.count > 0)
     executor.upload(trace.lights.sources, std::span<const LightSource>(scene.lights));
+  if (trace.lights.ambient.count > 0)
+    executor.upload(trace.lights.ambient, std::span<const AmbientLight>(&scene.ambient, 1));
   if (trace.textures.headers.count > 0) upload_textures(executor, trace.textures, scene);
   if (trace.filter.alpha.any()) upload_alpha(executor, trace.filter.alpha, scene.alpha);
+  if (trace.options.paths.any()) upload_paths(executor, trace.paths, scene.paths);
 }
 
 // The same of a frame with or without instances.

@@ -59,6 +59,8 @@ FramePlan MovingFrames::plan_all(MovingFrames& frames, const SceneArrays& arrays
           layout.add_mapped<BuildState>("state_left", 1),
           layout.add_mapped<TraceCounters>("counters_left", 1),
           layout.add_mapped<TraceCounters>("shadow_counters_left", plan.trace.lights.counters.count),
+          layout.add_mapped<TraceCounters>("occlusion_counters_left",
+                                           plan.trace.lights.occlusion_counters.count),
           layout.add_mapped<RefitState>("refit_left", 1),
           plan.levels ? plan_instances_left(layout, plan.levels->plan, moving) : InstancesLeft{}}});
   }
@@ -66,16 +68,20 @@ FramePlan MovingFrames::plan_all(MovingFrames& frames, const SceneArrays& arrays
 }
 
 MovingFrames::MovingFrames(Device& device, const Scene& scene, const MovingOptions& options)
+    : MovingFrames(device, scene, scene_arrays(scene, effects_of(scene, options.effects)), options) {}
+
+MovingFrames::MovingFrames(Device& device, const Scene& scene, const SceneArrays& arrays,
+                           const MovingOptions& options)
     : scene_(scene),
       motion_(motion_of(scene)),
       options_(for_scene(options, scene)),
       layout_(device.properties().max_block_bytes),
-      plan_(plan_all(*this, scene_arrays(scene, effects_of(scene, options.effects)))),
+      plan_(plan_all(*this, arrays)),
       executor_(device, layout_),
       measures_(device.properties().timestamp_period_ns > 0),
       chooser_(chooser()) {
   if (options_.under_way == 0) throw std::invalid_argument("no frame may be under way");
-  upload_scene(scene);
+  upload_scene(arrays);
   build_what_stands_still();
   const auto record = [&](const FrameSlots& slots, bool rebuilds) {
     Chain chain = executor_.chain();
@@ -88,11 +94,10 @@ MovingFrames::MovingFrames(Device& device, const Scene& scene, const MovingOptio
   }
 }
 
-void MovingFrames::upload_scene(const Scene& scene) {
-  const SceneArrays arrays = scene_arrays(scene, effects_of(scene, options_.effects));
+void MovingFrames::upload_scene(const SceneArrays& arrays) {
   upload_frame(executor_, plan_, arrays, Film{});
-  upload_moving_instances(executor_, instances_, scene, arrays);
-  if (!plan_.levels) upload_vertices(executor_, vertices_, motion_, std::span<const uvec3>(scene.indices));
+  upload_moving_instances(executor_, instances_, scene_, arrays);
+  if (!plan_.levels) upload_vertices(executor_, vertices_, motion_, std::span<const uvec3>(scene_.indices));
 }
 
 // Each in a submit of its own, as nobody waits for a frame yet. Where nothing moves, the tree over the
@@ -159,6 +164,8 @@ void MovingFrames::append_picture(Chain& chain, const FrameSlots& slots) const {
   append_copy_out(chain, plan_.tree.state, slots.left.state);
   append_copy_out(chain, trace.counters, slots.left.counters);
   if (slots.left.shadow.count > 0) append_copy_out(chain, trace.lights.counters, slots.left.shadow);
+  if (slots.left.occlusion.count > 0)
+    append_copy_out(chain, trace.lights.occlusion_counters, slots.left.occlusion);
   if (has_state()) append_copy_out(chain, refit_.state, slots.left.refit);
   if (plan_.levels) append_instances_left(chain, plan_.levels->plan, instances_, slots.left.instances);
 }
@@ -234,6 +241,7 @@ MovingFrame MovingFrames::outcome(const Recorder::Times& times, const Left& left
   frame.state = *mapped(left.state);
   frame.counts = counts_of(*mapped(left.counters));
   if (left.shadow.count > 0) frame.shadow = counts_of(*mapped(left.shadow));
+  if (left.occlusion.count > 0) frame.occlusion = counts_of(*mapped(left.occlusion));
   frame.image = {mapped(left.image), left.image.count};
   if (options_.tree_cost) frame.sah = sah_cost(*mapped(left.refit), frame.state.active_count);
   return frame;
@@ -267,7 +275,7 @@ MovingFrame MovingFrames::take() {
   const Slot<BuildState>& meshes = left.instances.mesh_states;
   if (meshes.count > 0) check_meshes({mapped(meshes), meshes.count});
   chooser_.note({frame.rebuilt, frame.submits > 1, frame.update_ms + frame.wide_ms, frame.trace_ms,
-                 frame.counts.steps + frame.shadow.steps});
+                 frame.counts.steps + frame.shadow.steps + frame.occlusion.steps});
   return frame;
 }
 

@@ -38,6 +38,7 @@ struct MovingFrame {
   std::uint32_t submits = 1;  // 2: triangles appeared that the tree of a refit has no leaves for
   TraceCounts counts;         // of the camera's rays
   TraceCounts shadow;         // of shadow rays
+  TraceCounts occlusion;      // of occlusion rays
   BuildState state;
   double sah = 0;               // of the tree; 0 unless asked for
   std::span<const uint> image;  // RGBA8; until so many more frames as may be under way have been submitted
@@ -53,7 +54,9 @@ class MovingFrames {
  public:
   // Throws DeviceError if the device's memory does not hold it or a mesh's tree does not come out,
   // LayoutError if a slot is too large, and what plan_vertices and plan_frame throw. Device and scene must
-  // outlive it.
+  // outlive it; the scene's arrays, with the effects that are wanted, need not.
+  MovingFrames(Device& device, const Scene& scene, const SceneArrays& arrays, const MovingOptions& options);
+  // With the arrays of the options' effects; nobody is told of their warnings.
   MovingFrames(Device& device, const Scene& scene, const MovingOptions& options);
   ~MovingFrames();
   MovingFrames(const MovingFrames&) = delete;
@@ -97,7 +100,7 @@ class MovingFrames {
     Slot<uint> image;
     Slot<BuildState> state;
     Slot<TraceCounters> counters;
-    Slot<TraceCounters> shadow;
+    Slot<TraceCounters> shadow, occlusion;
     Slot<RefitState> refit;
     InstancesLeft instances;
   };
@@ -118,7 +121,7 @@ class MovingFrames {
   void append_picture(Chain& chain, const FrameSlots& slots) const;
   const FrameSlots& last_slots() const { return slots_[(next_slot_ + slots_.size() - 1) % slots_.size()]; }
   void append_tree(Chain& chain, bool rebuilds) const;
-  void upload_scene(const Scene& scene);
+  void upload_scene(const SceneArrays& arrays);
   void build_what_stands_still();
   void tell(const Told& told, double seconds, const Film& film);
   UpdateChooser chooser() const;

@@ -1,8 +1,10 @@
 #include "render/scene_arrays.h"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <iterator>
 #include <limits>
 
@@ -13,32 +15,33 @@ namespace coppice {
 
 namespace {
 
-vec3 flush_to_zero(vec3 v) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (std::fpclassify(v[axis]) == FP_SUBNORMAL || v[axis] == 0) v[axis] = 0;
+AmbientLight ambient_light(const Scene& scene, std::span<const Triangle> triangles) {
+  double distance = scene.occlusion ? scene.occlusion->distance : 0;
+  if (distance == 0) {
+    const Aabb box = box_of(triangles);
+    distance = OCCLUSION_SHARE * glm::distance(glm::dvec3(box.box_min), glm::dvec3(box.box_max));
   }
-  return v;
-}
-
-// What is compared with 0 on the device has no denormals, and places no infinities.
-LightSource light_source(const Light& light) {
-  constexpr float farthest = 0x1p100f;
-  return {glm::clamp(light.place, -farthest, farthest), light.is_point ? LIGHT_POINT : LIGHT_DIRECTIONAL,
-          flush_to_zero(light.radiance), std::min(light.distance, farthest)};
+  return {flush_to_zero(scene.ambient_light),
+          static_cast<float>(std::clamp(distance, double{FLT_MIN}, double{FLT_MAX}))};
 }
 
 // The light is part of the materials, or shading goes over a list of lights, which materials only reflect.
 void add_lights(SceneArrays& arrays, const Scene& scene, const EffectSet& effects) {
-  for (const Light& light : shaded_lights(scene, effects)) {
+  const std::vector<Light> lights =
+      arrays.paths.counts.any() ? std::vector<Light>() : shaded_lights(scene, effects);
+  for (const Light& light : lights) {
     arrays.lights.push_back(light_source(light));
     ++arrays.light_counts.lights;
     arrays.light_counts.shadows += light.shadows;
     arrays.light_counts.points |= light.is_point;
   }
-  const bool listed = !arrays.lights.empty();
+  const bool occluded = occludes_ambient(scene, effects);
+  if (occluded) arrays.ambient = ambient_light(scene, arrays.triangles);
+  arrays.light_counts.occlusion = occluded;
+  const bool listed = arrays.light_counts.any();
   for (const Material& material : scene.materials) {
     arrays.materials.push_back(
-        {material.emission + material.diffuse * scene.ambient_light,
+        {occluded ? material.emission : material.emission + material.diffuse * scene.ambient_light,
          listed ? flush_to_zero(material.diffuse) : material.diffuse * scene.light.radiance});
   }
   const vec3 direction = listed ? vec3(0) : scene.light.direction;
@@ -53,7 +56,12 @@ void add_textures(SceneArrays& arrays, const Scene& scene) {
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     const Material& material = scene.materials[i];
     arrays.textured_materials.push_back(
-        {material.emission, material.diffuse * scene.ambient_light, arrays.materials[i].diffuse});
+        arrays.paths.counts.any()
+            ? TexturedMaterial{arrays.paths.materials[i].ambient, vec3(0), arrays.paths.materials[i].diffuse}
+            : TexturedMaterial{
+                  material.emission,
+                  arrays.light_counts.occlusion ? vec3(0) : material.diffuse * scene.ambient_light,
+                  arrays.materials[i].diffuse});
   }
 }
 
@@ -73,7 +81,9 @@ SceneArrays scene_arrays(const Scene& scene, const EffectSet& effects) {
     arrays.triangles.push_back({positions[corner.x], positions[corner.y], positions[corner.z]});
   }
   arrays.material_index = scene.material_index;
+  if (scene.instances.empty()) arrays.paths = path_arrays(scene, effects, arrays.triangles);
   add_lights(arrays, scene, effects);
+  arrays.lens = effects.has(Effect::depth_of_field) && scene.lens.aperture > 0;
   if (effects.has(Effect::textures)) add_textures(arrays, scene);
   if (effects.has(Effect::alpha) && std::ranges::any_of(scene.materials, lets_rays_through))
     arrays.alpha = alpha_arrays(scene, arrays.corners.empty() ? corner_attributes(scene) : arrays.corners);

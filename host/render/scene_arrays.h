@@ -5,9 +5,9 @@
 
 #include "interface/instances.h"
 #include "pipeline/alpha.h"
-#include "pipeline/lights.h"
 #include "pipeline/textures.h"
 #include "render/alpha_arrays.h"
+#include "render/path_arrays.h"
 #include "render/texture_arrays.h"
 #include "scene/effect_set.h"
 
@@ -21,6 +21,9 @@ struct SceneArrays {
   Lighting lighting = {};
   std::vector<LightSource> lights;  // that shading goes over, see LightCounts; none: the one of `lighting`
   LightCounts light_counts;
+  AmbientLight ambient = {};  // where it is occluded, and not part of the materials
+  bool lens = false;          // depth of field is asked for, and the scene has an aperture
+  PathArrays paths;           // that shading is left to, if there are any
   // Where textures are asked for, and there are some:
   TextureArrays textures;
   std::vector<TexturedMaterial> textured_materials;

@@ -127,7 +127,10 @@ Scene open_scene_with_room(const SceneOptions& options, const DeviceOptions* dev
     if (device) opened.emplace(DeviceOptions{.select = device->select});
     check_room(options.spec, {opened ? &*opened : nullptr, build}, note);
   }
-  return open_scene(options.spec, options.up, options.keep_instances);
+  Scene scene = open_scene(options.spec, options.up, options.keep_instances);
+  set_lens(scene, options);
+  scene.bounces = options.bounces.value_or(scene.bounces);
+  return scene;
 }
 
 }  // namespace coppice

@@ -29,7 +29,7 @@ struct DeviceRoom {
 void check_room(const std::string& spec, const DeviceRoom& room,
                 const std::function<void(const std::string&)>& note);
 
-// open_scene, but for what check_room refuses. `device`: which one will hold the scene, if any.
+// open_scene and set_lens, but for what check_room refuses. `device`: which one will hold the scene, if any.
 Scene open_scene_with_room(const SceneOptions& options, const DeviceOptions* device,
                            const std::optional<BuildOptions>& build,
                            const std::function<void(const std::string&)>& note);

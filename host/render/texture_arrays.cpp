@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "scene/material_maps.h"
+#include "scene/printable.h"
 #include "scene/texture.h"
 
 namespace coppice {
@@ -55,9 +56,9 @@ class TextureArraysMaker {
     images_.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
       if (arrays_.texels.size() + words_of(textures[i]) > MAX_TEXTURE_WORDS) {
-        warnings[i] = listing_.images[i].name + ": the scene's textures come to more than " +
-                      std::to_string(MAX_TEXTURE_WORDS) + " texels, a checker takes its place as " +
-                      listing_.images[i].user;
+        warnings[i] = printable(std::string_view(listing_.images[i].name)) +
+                      ": the scene's textures come to more than " + std::to_string(MAX_TEXTURE_WORDS) +
+                      " texels, a checker takes its place as " + listing_.images[i].user;
         textures[i] = checker_texture(listing_.images[i].is_colour);
       }
       if (!warnings[i].empty()) arrays_.warnings.push_back(std::move(warnings[i]));

@@ -6,6 +6,7 @@
 #include "scene/input_error.h"
 #include "scene/opacity.h"
 #include "scene/printable.h"
+#include "scene/surface_effects.h"
 
 namespace coppice {
 
@@ -62,6 +63,44 @@ std::string why_alpha(const Material& material) {
   return "of whose surface " + coverage + " is there";
 }
 
+std::string quoted(const Material& material) {
+  return "material '" + printable(std::string_view(material.name)) + "'";
+}
+
+// By the materials of triangles, in the order of triangles.
+void call_for_paths(const Scene& scene, EffectSet& effects) {
+  std::vector<bool> seen(scene.materials.size());
+  for (const std::uint32_t index : scene.material_index) {
+    if (seen[index]) continue;
+    seen[index] = true;
+    const Material& material = scene.materials[index];
+    if (is_emitter(material)) {
+      effects.call(Effect::emission, quoted(material) + ", which emits light");
+      effects.call(Effect::shadows, quoted(material) + ", whose light casts them");
+    }
+    if (is_reflecting(material)) effects.call(Effect::reflection, quoted(material) + ", which reflects");
+    if (transmission_of(material) > 0)
+      effects.call(Effect::refraction, quoted(material) + ", through which light goes");
+  }
+  if (scene.global_illumination) effects.call(Effect::global_illumination, "/global_illumination");
+}
+
+// What `shadows` says about lights that may cast them.
+void cast_shadows(std::vector<Light>& lights, const EffectSet& effects) {
+  const bool shadows = effects.has(Effect::shadows);
+  const bool all_cast = shadows && effects.of(Effect::shadows).overridden;
+  for (Light& light : lights) light.shadows = shadows && (light.shadows || all_cast);
+}
+
+// Without the effect only the directional light, if it is one.
+std::vector<Light> lights_with(const Scene& scene, const EffectSet& effects) {
+  std::vector<Light> lights = bright_lights(scene);
+  if (effects.has(Effect::lights)) return lights;
+  std::erase_if(lights, [](const Light& light) { return light.is_point; });
+  if (lights.size() > 1) lights.resize(1);
+  return lights;
+}
+
 }  // namespace
 
 void EffectSet::call(Effect effect, const std::string& by) {
@@ -95,6 +134,10 @@ EffectSet effects_of(const Scene& scene, const EffectChanges& changes) {
   }
   call_by_material(scene, Effect::textures, effects, why_textures);
   call_by_material(scene, Effect::alpha, effects, why_alpha);
+  if (scene.occlusion && is_bright(scene.ambient_light))
+    effects.call(Effect::ambient_occlusion, "/ambient_occlusion");
+  if (scene.lens.aperture > 0) effects.call(Effect::depth_of_field, scene.lens.origin);
+  call_for_paths(scene, effects);
   return changes.applied_to(effects);
 }
 
@@ -131,18 +174,24 @@ EffectChanges EffectChanges::but(Effect effect, bool on) const {
   return changes;
 }
 
+bool occludes_ambient(const Scene& scene, const EffectSet& effects) {
+  return effects.has(Effect::ambient_occlusion) && is_bright(scene.ambient_light) && !effects.follows_paths();
+}
+
 std::vector<Light> shaded_lights(const Scene& scene, const EffectSet& effects) {
-  std::vector<Light> lights = bright_lights(scene);
-  // Without the effect only the directional light, if it is one.
-  if (!effects.has(Effect::lights)) {
-    std::erase_if(lights, [](const Light& light) { return light.is_point; });
-    if (lights.size() > 1) lights.resize(1);
-  }
-  const bool shadows = effects.has(Effect::shadows);
-  const bool all_cast = shadows && effects.of(Effect::shadows).overridden;
-  for (Light& light : lights) light.shadows = shadows && (light.shadows || all_cast);
-  if (!effects.has(Effect::lights) && !shadows) return {};
+  if (!effects.has(Effect::lights) && !effects.has(Effect::shadows) && !occludes_ambient(scene, effects))
+    return {};
+  std::vector<Light> lights = lights_with(scene, effects);
+  cast_shadows(lights, effects);
   std::stable_partition(lights.begin(), lights.end(), [](const Light& light) { return !light.shadows; });
+  return lights;
+}
+
+std::vector<Light> path_lights(const Scene& scene, const EffectSet& effects) {
+  std::vector<Light> lights = lights_with(scene, effects);
+  const bool default_light = scene.light_origin.empty() && !lights.empty() && !lights[0].is_point;
+  if (default_light && effects.is_used(Effect::emission)) lights.erase(lights.begin());
+  cast_shadows(lights, effects);
   return lights;
 }
 

@@ -13,9 +13,22 @@ namespace coppice {
 
 // What is simulated only where a scene calls for it. The table in docs/effects.md says what calls for which,
 // and what each adds.
-enum class Effect : std::uint32_t { lights, shadows, textures, alpha };
+enum class Effect : std::uint32_t {
+  lights,
+  shadows,
+  textures,
+  depth_of_field,
+  ambient_occlusion,
+  emission,
+  reflection,
+  refraction,
+  global_illumination,
+  alpha
+};
 
-inline constexpr std::string_view EFFECT_NAMES[] = {"lights", "shadows", "textures", "alpha"};
+inline constexpr std::string_view EFFECT_NAMES[] = {
+    "lights",   "shadows",    "textures",   "depth_of_field",     "ambient_occlusion",
+    "emission", "reflection", "refraction", "global_illumination", "alpha"};
 inline constexpr std::size_t effect_count = std::size(EFFECT_NAMES);
 
 constexpr std::string_view name_of(Effect effect) { return EFFECT_NAMES[static_cast<std::size_t>(effect)]; }
@@ -32,10 +45,20 @@ class EffectSet {
   bool has(Effect effect) const { return of(effect).on; }
   const State& of(Effect effect) const { return states_[static_cast<std::size_t>(effect)]; }
 
-  // Whether some effect takes triangles of one level: instances are then flattened. Textures and alpha that
-  // are turned on and that nothing has take nothing.
+  // On, and the scene has something for it: what is turned on and nothing has takes nothing.
+  bool is_used(Effect effect) const { return has(effect) && !of(effect).called_by.empty(); }
+
+  // Whether light is followed along paths, in the place of being shaded where the camera's rays end.
+  bool follows_paths() const {
+    return has(Effect::global_illumination) || is_used(Effect::emission) || is_used(Effect::reflection) ||
+           is_used(Effect::refraction);
+  }
+
+  // Whether some effect takes triangles of one level: instances are then flattened.
   bool needs_one_level() const {
-    return has(Effect::shadows) || is_called(Effect::textures) || is_called(Effect::alpha);
+    return has(Effect::shadows) || has(Effect::ambient_occlusion) || is_used(Effect::textures) ||
+           is_used(Effect::alpha) ||
+           follows_paths();
   }
 
   // The first thing that calls for an effect is the one that is named.
@@ -43,8 +66,6 @@ class EffectSet {
   void override(Effect effect, bool on);
 
  private:
-  bool is_called(Effect effect) const { return has(effect) && !of(effect).called_by.empty(); }
-
   std::array<State, effect_count> states_;
 };
 
@@ -77,8 +98,16 @@ std::string no_effects();
 // What a scene calls for, changed or not.
 EffectSet effects_of(const Scene& scene, const EffectChanges& changes = {});
 
+// Whether something may keep ambient light off: the effect is on, there is some, and paths, which ambient
+// light reaches otherwise, are not followed.
+bool occludes_ambient(const Scene& scene, const EffectSet& effects);
+
 // The lights that shading goes over with these effects, those that cast shadows last, each in the scene's
-// order; none where the directional light alone, without shadows, is all there is.
+// order; none where the directional light alone, without shadows, and plain ambient light are all there is.
 std::vector<Light> shaded_lights(const Scene& scene, const EffectSet& effects);
+
+// Those that paths choose from, which emitters come beside: where there are any, the default light is left
+// out.
+std::vector<Light> path_lights(const Scene& scene, const EffectSet& effects);
 
 }  // namespace coppice

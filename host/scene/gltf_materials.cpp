@@ -51,6 +51,7 @@ Material material_of(const GltfDocument& document, std::size_t index, GltfTextur
   Material material;
   material.name = from.value("name", "material " + std::to_string(index));
   material.diffuse = colour_of(base);
+  material.filter = glm::clamp(material.diffuse, 0.0f, 1.0f);
   material.specular = glm::mix(glm::vec3(0.04f), material.diffuse, metallic);
   material.shininess = shininess_of(surface.value("roughnessFactor", 1.0f));
   material.index_of_refraction = 1.5f;
@@ -83,6 +84,7 @@ Material material_of(const GltfDocument& document, std::size_t index, GltfTextur
     material.emission_map = std::exchange(material.diffuse_map, {});
     material.diffuse = material.specular = glm::vec3(0);
     material.illum = 0;
+    material.is_unlit = true;
   }
   return material;
 }

@@ -156,6 +156,7 @@ class MaterialText {
     append(words);
     is_xyz_[keyword] = is_xyz;
     if (keyword == "Kd") has_diffuse_ = true;
+    if (keyword == "Tf") has_filter_ = true;
   }
 
   void add_map(const MaterialMap& kind, std::string_view rest, const std::string& place,
@@ -195,6 +196,7 @@ class MaterialText {
     Material material = maps_;
     material.name = name_;
     if (has_diffuse_) material.diffuse = colour("Kd", mtl.diffuse);
+    if (has_filter_) material.filter = colour("Tf", mtl.transmittance);
     material.specular = colour("Ks", mtl.specular);
     material.emission = colour("Ke", mtl.emission);
     material.shininess = finite_or(mtl.shininess, 1);
@@ -206,7 +208,7 @@ class MaterialText {
 
   std::string name_, text_;
   std::map<std::string_view, bool> is_xyz_;  // by keyword, those of KEYWORDS
-  bool has_diffuse_ = false;
+  bool has_diffuse_ = false, has_filter_ = false;
   Material maps_;                                       // and the numbers that tinyobjloader does not read
   std::optional<std::string> dissolve_, transparency_;  // the numbers
   std::string opacity_place_;

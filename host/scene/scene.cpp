@@ -66,6 +66,9 @@ void bring_into_range(Scene& scene) {
     scale_point(scene.camera->position);
     scale_point(scene.camera->target);
   }
+  scene.lens.aperture = scale(scene.lens.aperture);
+  scene.lens.focus = scale(scene.lens.focus);
+  if (scene.occlusion) scene.occlusion->distance = scale(scene.occlusion->distance);
   for (Light& light : scene.more_lights) {
     if (!light.is_point) continue;
     scale_point(light.place);
@@ -88,6 +91,7 @@ void stand_up(Scene& scene, std::string_view up) {
   scene.turn = turn * scene.turn;
   move_to_scene(scene, glm::dmat4(glm::dmat3(turn)));
   scene.camera.reset();
+  scene.lens = {};
 }
 
 glm::dvec3 direction_to_scene(const Scene& scene, glm::dvec3 direction) {

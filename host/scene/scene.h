@@ -25,7 +25,9 @@ struct Material {
   float shininess = 1.0f;            // Ns, the Phong exponent
   float opacity = 1.0f;              // d, or 1 - Tr; 0 is invisible, 1 is solid
   float index_of_refraction = 1.0f;  // Ni
+  glm::vec3 filter{1.0f};            // Tf, of what goes through
   int illum = 1;                     // illumination model, 0 to 10
+  bool is_unlit = false;             // emission is its colour, and lights nothing
   std::optional<float> roughness{};  // Pr, from 0 to 1
   std::optional<float> metallic{};   // Pm, from 0 to 1
   // Maps (scene/material_maps.h). Each multiplies what it is a map of; the last two of a material without
@@ -67,6 +69,20 @@ struct Camera {
   glm::vec3 up{0.0f, 1.0f, 0.0f};
   float vertical_fov_degrees = 40.0f;
 };
+
+// A thin lens in the place of the pinhole, whichever camera looks.
+struct Lens {
+  float aperture = 0.0f;  // diameter, in units of the scene; 0: a pinhole
+  float focus = 0.0f;     // depth along the line of sight that is sharp; 0: that of the camera's target
+  std::string origin;     // what the aperture is of, such as "/camera/aperture"
+};
+
+// Things that are near keep ambient light off.
+struct AmbientOcclusion {
+  float distance = 0.0f;  // how near, in units of the scene; 0: OCCLUSION_SHARE of the scene's diagonal
+};
+
+inline constexpr double OCCLUSION_SHARE = 0.05;
 
 // Of a corner without texture coordinates, or without a normal.
 inline constexpr std::uint32_t NO_ATTRIBUTE = ~0u;
@@ -123,12 +139,16 @@ struct Scene {
   std::optional<Swarm> swarm;                      // none: the instances stand still
   std::vector<Material> materials = {Material{}};  // never empty
   std::optional<Camera> camera;                    // absent: frame_scene chooses one
+  Lens lens;
   // Of the faces of an OBJ or PLY file, before they are cut into triangles (FaceDigest); 0 of others.
   std::uint64_t face_digest = 0;
   DirectionalLight light;
-  std::string light_origin;        // what the file calls it; empty for the default one
-  std::vector<Light> more_lights;  // at most MAX_LIGHTS - 1
-  glm::vec3 ambient_light{0.35f};  // linear RGB, multiplies Material::diffuse
+  std::string light_origin;                   // what the file calls it; empty for the default one
+  std::vector<Light> more_lights;             // at most MAX_LIGHTS - 1
+  glm::vec3 ambient_light{0.35f};             // linear RGB, multiplies Material::diffuse
+  std::optional<AmbientOcclusion> occlusion;  // none: it reaches everything
+  bool global_illumination = false;           // whether light goes on from diffuse surfaces
+  std::uint32_t bounces = 4;                  // of paths at most, beside the camera's rays
   // Null: nothing moves but a swarm. With instances it has no vertices: these are in InstancedMesh::motion.
   std::shared_ptr<const Motion> motion;
   std::vector<std::string> warnings;  // one line each, what was odd about the input but not fatal
@@ -148,8 +168,8 @@ void bring_into_range(Scene& scene);
 inline constexpr std::array<std::string_view, 6> UP_AXES = {"x", "y", "z", "-x", "-y", "-z"};
 
 // Turns the scene so that the axis `up`, one of UP_AXES, becomes +y. With z up, the file's y then points away
-// from the default camera, as north on a map. But for "y" the scene's own camera is dropped. The directional
-// light stays where it is, the others turn with the scene, and normals of what has no instances.
+// from the default camera, as north on a map. But for "y" the scene's own camera and lens are dropped. The
+// directional light stays where it is, the others turn with the scene, and normals of what has no instances.
 void stand_up(Scene& scene, std::string_view up);
 
 // A point or a direction of the file, as its user knows it, in the scene, and a point of the scene in the

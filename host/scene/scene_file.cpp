@@ -34,6 +34,9 @@ Material scene_file_material(const std::string& name, const json& from) {
   material.opacity = from.value("opacity", material.opacity);
   material.index_of_refraction = from.value("index_of_refraction", material.index_of_refraction);
   material.illum = from.value("illum", material.illum);
+  if (from.contains("filter")) material.filter = vector_of(from["filter"]);
+  if (from.contains("roughness")) material.roughness = from["roughness"].get<float>();
+  if (from.contains("metallic")) material.metallic = from["metallic"].get<float>();
   return material;
 }
 
@@ -208,6 +211,7 @@ void SceneFileReader::read_camera() {
 // The scene's own camera and light turn with it.
 void stand_up_whole(Scene& scene, std::string_view up) {
   std::optional<Camera> camera = scene.camera;
+  const Lens lens = scene.lens;
   stand_up(scene, up);
   if (up == "y") return;
   scene.light.direction = scene.turn * scene.light.direction;  // the others have turned
@@ -215,6 +219,7 @@ void stand_up_whole(Scene& scene, std::string_view up) {
   for (glm::vec3* const vector : {&camera->position, &camera->target, &camera->up})
     *vector = scene.turn * *vector;
   scene.camera = camera;
+  scene.lens = lens;
 }
 
 Scene SceneFileReader::composed() {
@@ -244,6 +249,9 @@ Scene SceneFileReader::read() {
   scene.warnings.insert(scene.warnings.begin(), warnings_.begin(), warnings_.end());
   if (scene.indices.empty()) scene.warnings.push_back(name_ + ": no triangles");
   read_scene_lights(file_, name_, scene);
+  if (file_.contains("ambient_occlusion"))
+    scene.occlusion = AmbientOcclusion{file_["ambient_occlusion"].value("distance", 0.0f)};
+  if (file_.contains("camera")) scene.lens = read_scene_lens(file_["camera"]);
   stand_up_whole(scene, file_.value("up", "y"));
   return scene;
 }

@@ -61,6 +61,10 @@ void read_scene_lights(const json& file, const std::string& name, Scene& scene) 
       set_lights(scene, std::move(lights));
     }
   }
+  if (file.contains("global_illumination")) {
+    scene.global_illumination = true;
+    scene.bounces = file["global_illumination"].value("bounces", scene.bounces);
+  }
   if (!is_dark(scene)) return;
   scene.warnings.push_back(name + ": no light at all, the default light is taken");
   const Scene with_default;

@@ -187,4 +187,8 @@ CameraTracks read_scene_camera(const json& camera, const std::string& name, cons
   return tracks;
 }
 
+Lens read_scene_lens(const json& camera) {
+  return {camera.value("aperture", 0.0f), camera.value("focus", 0.0f), "/camera/aperture"};
+}
+
 }  // namespace coppice

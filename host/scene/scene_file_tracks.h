@@ -29,4 +29,7 @@ void read_object_tracks(const nlohmann::json& object, const std::string& name, c
 CameraTracks read_scene_camera(const nlohmann::json& camera, const std::string& name,
                                const std::string& pointer);
 
+// The aperture and the focus of the same.
+Lens read_scene_lens(const nlohmann::json& camera);
+
 }  // namespace coppice

@@ -1,7 +1,9 @@
 #include "scene/scene_source.h"
 
 #include <algorithm>
+#include <cfloat>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -222,6 +224,21 @@ Scene open_scene(const std::string& spec, std::string_view up, bool keep_instanc
   stand_up(scene, up);
   bring_into_range(scene);
   return scene;
+}
+
+void set_lens(Scene& scene, const SceneOptions& options) {
+  const auto in_scene = [&](double length) {
+    const double scaled = std::ldexp(length, scene.scale_exponent);
+    return static_cast<float>(std::clamp(scaled, double{FLT_MIN}, double{FLT_MAX}));
+  };
+  Lens& lens = scene.lens;
+  if (options.aperture) {
+    lens.aperture = *options.aperture > 0 ? in_scene(*options.aperture) : 0.0f;
+    lens.origin = "--aperture";
+  }
+  if (!options.focus) return;
+  lens.focus = in_scene(*options.focus);
+  if (lens.aperture == 0) scene.warnings.push_back("--focus means nothing without an aperture");
 }
 
 }  // namespace coppice

@@ -67,6 +67,12 @@ struct SceneOptions {
   std::string up = "y";        // one of UP_AXES
   bool keep_instances = false;
   EffectChanges effects{};  // beside what it calls for
+  // Of the lens, in the file's unit, in the place of what the scene says.
+  std::optional<double> aperture{}, focus{};
+  std::optional<std::uint32_t> bounces{};  // of paths at most; none: the scene's own
 };
+
+// Those two, of a scene that is open. Says in its warnings where the focus means nothing.
+void set_lens(Scene& scene, const SceneOptions& options);
 
 }  // namespace coppice

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "interface/trace.h"
+#include "interface/paths.h"
 
 namespace coppice {
 
@@ -102,6 +102,26 @@ Verdict judge(const vec3& cpu, const vec3& gpu, NearlyEqual&) {
                                                                            : Verdict::beyond;
 }
 
+bool alike(const vec3& a, const vec3& b) {
+  return within(a, b, colour_tolerance * std::max(largest(a), 1.0f));
+}
+
+bool alike(float a, float b) { return within(a, b, colour_tolerance * std::max(std::abs(a), 1.0f)); }
+
+Verdict judge(const SurfacePoint& cpu, const SurfacePoint& gpu, NearlyEqual&) {
+  const bool all = alike(cpu.normal, gpu.normal) && alike(cpu.roughness, gpu.roughness) &&
+                   alike(cpu.diffuse, gpu.diffuse) && alike(cpu.ior_ratio, gpu.ior_ratio) &&
+                   alike(cpu.specular, gpu.specular) && alike(cpu.transmission, gpu.transmission);
+  return all ? Verdict::within : Verdict::beyond;
+}
+
+Verdict judge(const Path& cpu, const Path& gpu, NearlyEqual&) {
+  const bool all = alike(cpu.throughput, gpu.throughput) && cpu.pixel == gpu.pixel &&
+                   alike(cpu.pdf, gpu.pdf) && cpu.flags == gpu.flags && cpu.seed == gpu.seed &&
+                   cpu.padding == gpu.padding;
+  return all ? Verdict::within : Verdict::beyond;
+}
+
 Verdict judge(const float& cpu, const float& gpu, NearlyEqual&) {
   return within(cpu, gpu, noise_tolerance * std::abs(cpu)) ? Verdict::within : Verdict::beyond;
 }
@@ -170,6 +190,10 @@ NearlyEqual compare_nearly(Nearly like, std::span<const std::byte> cpu, std::spa
       return compare<float>(cpu, gpu, none);
     case Nearly::image:
       return compare<uint>(cpu, gpu, thousandth);
+    case Nearly::surfaces:
+      return compare<SurfacePoint>(cpu, gpu, thousandth);
+    case Nearly::paths:
+      return compare<Path>(cpu, gpu, thousandth);
   }
   throw std::logic_error("no such way of being nearly equal");
 }

@@ -9,6 +9,11 @@
 
 namespace coppice {
 
+// Rays by which paths have gone on, by the lobe of the surface.
+struct LobeCounts {
+  std::uint64_t diffuse = 0, reflected = 0, transmitted = 0;
+};
+
 // What a run left on the device that decides how many bytes its stages moved.
 struct RunCounts {
   std::uint32_t active_count = 0;              // triangles in the tree
@@ -19,9 +24,17 @@ struct RunCounts {
   std::vector<RefitLevel> refit_levels;         // the same of refits
   std::uint64_t rays = 0, hits = 0, steps = 0;  // of the whole trace
   // Of its shadow rays. `could_be`: so many they were if every ray had one for each light that casts shadows.
+  // The same of occlusion rays.
+  struct Secondary {
+    std::uint64_t could_be = 0, rays = 0, hits = 0, steps = 0;
+  };
+  Secondary shadow, occlusion;
+  // Of its paths, those of cameras not counted; of their light rays `shadow`. `could_be`: as many if each
+  // went on at every bounce.
   struct {
     std::uint64_t could_be = 0, rays = 0, hits = 0, steps = 0;
-  } shadow;
+    LobeCounts lobes{};
+  } paths;
 };
 
 }  // namespace coppice

@@ -24,7 +24,9 @@ enum class Nearly {
   counters,
   radiance,
   noise,
-  image
+  image,
+  surfaces,
+  paths
 };
 
 struct NearlySlot {

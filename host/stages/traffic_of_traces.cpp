@@ -18,9 +18,20 @@ Bytes share(Bytes sum, Bytes rays, const RunCounts& counts) {
                             static_cast<double>(counts.rays));
 }
 
+// Of rays by which paths go on, those of `rays` rays of the picture at one bounce; `visited` is what the
+// camera's rays visit.
+Bytes bounced_bytes(Bytes rays, Bytes per_ray, Bytes visited, const RunCounts& counts) {
+  const double part = static_cast<double>(rays) / static_cast<double>(counts.paths.could_be);
+  const double a_step = static_cast<double>(visited) / static_cast<double>(std::max<Bytes>(counts.steps, 1));
+  return static_cast<Bytes>(part * (static_cast<double>(counts.paths.rays) * static_cast<double>(per_ray) +
+                                    static_cast<double>(counts.paths.steps) * a_step));
+}
+
 // Of a walk that visits so much over the whole trace.
 template <class Args>
 Bytes walk_bytes(const Args& args, Bytes per_ray, Bytes visited, const RunCounts& counts) {
+  if (args.count_at.value && counts.paths.could_be)
+    return bounced_bytes(args.ray_count, per_ray, visited, counts);
   const Bytes rays = args.count_at.value ? std::min<Bytes>(args.ray_count, counts.rays) : args.ray_count;
   return rays * per_ray + share(visited, rays, counts);
 }
@@ -35,16 +46,30 @@ Bytes pairs_of(const RunCounts& counts) { return counts.steps * 2 * sizeof(Node)
 Bytes wide_nodes_of(const RunCounts& counts) { return counts.steps * sizeof(WideNode); }
 Bytes triangles_of(const RunCounts& counts) { return counts.hits * sizeof(Triangle); }
 
-// Of shadow rays, the part of those that `rays` rays of the picture have for one light.
-Bytes shadow_share(Bytes sum, Bytes rays, const RunCounts& counts) {
-  if (counts.shadow.could_be == 0) return 0;
+// Of shadow or occlusion rays, the part of those that `rays` rays of the picture have for one light.
+Bytes part_of(const RunCounts::Secondary& secondary, Bytes sum, Bytes rays) {
+  if (secondary.could_be == 0) return 0;
   return static_cast<Bytes>(static_cast<double>(sum) * static_cast<double>(rays) /
-                            static_cast<double>(counts.shadow.could_be));
+                            static_cast<double>(secondary.could_be));
 }
 
-Bytes shadow_walk_bytes(Bytes rays, Bytes step, const RunCounts& counts) {
-  return shadow_share(counts.shadow.rays, rays, counts) * ray_and_word +
-         shadow_share(counts.shadow.steps * step + counts.shadow.hits * sizeof(Triangle), rays, counts);
+Bytes shadow_share(Bytes sum, Bytes rays, const RunCounts& counts) {
+  return part_of(counts.shadow, sum, rays);
+}
+
+Bytes occlusion_share(Bytes sum, Bytes rays, const RunCounts& counts) {
+  return part_of(counts.occlusion, sum, rays);
+}
+
+// Both take the same stages.
+RunCounts::Secondary secondary_of(const RunCounts& counts) {
+  const RunCounts::Secondary &a = counts.shadow, &b = counts.occlusion;
+  return {a.could_be + b.could_be, a.rays + b.rays, a.hits + b.hits, a.steps + b.steps};
+}
+
+Bytes secondary_walk_bytes(const RunCounts::Secondary& secondary, Bytes rays, Bytes step) {
+  return part_of(secondary, secondary.rays, rays) * ray_and_word +
+         part_of(secondary, secondary.steps * step + secondary.hits * sizeof(Triangle), rays);
 }
 
 // Of each hit, beside what the trace without alpha moves, the word of its triangle. How many others were
@@ -86,12 +111,14 @@ Bytes trace_wide_single(const TraceWideArgs& a, const RunCounts& counts) {
 }
 
 Bytes trace_any(const TraceAnyArgs& a, const RunCounts& counts) {
-  if (counts.shadow.could_be) return shadow_walk_bytes(a.ray_count, 2 * sizeof(Node), counts);
+  if (const auto secondary = secondary_of(counts); secondary.could_be)
+    return secondary_walk_bytes(secondary, a.ray_count, 2 * sizeof(Node));
   return walk_bytes(a, ray_and_word, pairs_of(counts) + triangles_of(counts), counts);
 }
 
 Bytes trace_wide_any(const TraceWideAnyArgs& a, const RunCounts& counts) {
-  if (counts.shadow.could_be) return shadow_walk_bytes(a.ray_count, sizeof(WideNode), counts);
+  if (const auto secondary = secondary_of(counts); secondary.could_be)
+    return secondary_walk_bytes(secondary, a.ray_count, sizeof(WideNode));
   return walk_bytes(a, ray_and_word, wide_nodes_of(counts) + triangles_of(counts), counts);
 }
 
@@ -194,6 +221,26 @@ Bytes shade_lights(const ShadeLightsArgs& a, const RunCounts& counts) {
   return Bytes{a.ray_count} * 4 + share(counts.hits, a.ray_count, counts) * 4 +
          shadow_share(counts.shadow.rays, a.ray_count, counts) * 8 +
          shadow_share(counts.shadow.rays - counts.shadow.hits, a.ray_count, counts) * of_surface;
+}
+
+// Of each ray its triangle and its mark, of a hit its surface.
+Bytes occlusion_marks(const OcclusionMarksArgs& a, const RunCounts& counts) {
+  return Bytes{a.ray_count} * (4 + 4) +
+         share(counts.hits, a.ray_count, counts) * (4 + sizeof(SurfaceMaterial));
+}
+
+// Of each ray its mark and its place.
+Bytes occlusion_rays(const OcclusionRaysArgs& a, const RunCounts& counts) {
+  return Bytes{a.ray_count} * 8 + occlusion_share(counts.occlusion.rays, a.ray_count, counts) *
+                                      (sizeof(Hit) + sizeof(vec3) + sizeof(Triangle) + sizeof(Ray));
+}
+
+// Of each ray its mark, of those with a ray of their own what it has hit, of those that it has not what is
+// shaded.
+Bytes shade_ambient(const ShadeAmbientArgs& a, const RunCounts& counts) {
+  return Bytes{a.ray_count} * 4 + occlusion_share(counts.occlusion.rays, a.ray_count, counts) * 8 +
+         occlusion_share(counts.occlusion.rays - counts.occlusion.hits, a.ray_count, counts) *
+             (4 + 4 + sizeof(SurfaceMaterial) + 2 * sizeof(vec3));
 }
 
 // Of each ray its steps or its triangle, of each hit what is shown of it.

@@ -5,6 +5,7 @@
 
 #include "twins/bsdf_lobes.h"
 #include "twins/circle.h"
+#include "twins/cosine_direction.h"
 #include "twins/vectors.h"
 
 namespace coppice::twins {
@@ -12,41 +13,6 @@ namespace coppice::twins {
 namespace {
 
 const BsdfSample no_direction = {vec3(0), 0, vec3(0), BSDF_NONE};
-
-// Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
-struct TangentFrame {
-  vec3 tangent, bitangent, normal;
-
-  explicit TangentFrame(const vec3& n) : normal(n) {
-    const float side = n.z < 0 ? -1.0f : 1.0f;
-    const float a = -1.0f / (side + n.z);
-    const float b = n.x * n.y * a;
-    tangent = vec3(1.0f + side * n.x * n.x * a, side * b, -side * n.x);
-    bitangent = vec3(b, side + n.y * n.y * a, -n.y);
-  }
-
-  vec3 to_world(float x, float y, float z) const {
-    return unit_vector(tangent * x + bitangent * y + normal * z);
-  }
-};
-
-// Shirley and Chiu 1997, "A Low Distortion Map Between Disk and Square".
-vec3 cosine_direction(const vec3& normal, const glm::vec2& u) {
-  const float x = 2 * u.x - 1 + 0x1p-24f, y = 2 * u.y - 1 + 0x1p-24f;
-  float radius = y, on_disk_x = 0, on_disk_y = 0;
-  if (std::fabs(x) > std::fabs(y)) {
-    radius = x;
-    const OnCircle at = circle_beside_quarter(0, 0.5f * y / x);
-    on_disk_x = radius * at.cos;
-    on_disk_y = radius * at.sin;
-  } else {
-    const OnCircle at = circle_beside_quarter(0, y == 0 ? 0.0f : 0.5f * x / y);
-    on_disk_x = radius * at.sin;
-    on_disk_y = radius * at.cos;
-  }
-  const float height = std::sqrt(std::max((1 - radius) * (1 + radius), 0.0f));
-  return TangentFrame(normal).to_world(on_disk_x, on_disk_y, height);
-}
 
 // Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps".
 vec3 visible_facet(const vec3& normal, const vec3& view, float alpha, const glm::vec2& u) {

@@ -1,7 +1,9 @@
 #include <limits>
 
 #include "interface/trace.h"
+#include "twins/circle.h"
 #include "twins/film_pixel.h"
+#include "twins/sampler.h"
 #include "twins/shading.h"
 
 namespace coppice::twins {
@@ -44,10 +46,17 @@ void camera_rays(const CameraRaysArgs& args) {
     down = half_on(sobol(args.sample_index));
   }
   for (uint i = 0; i < args.ray_count; ++i) {
-    const uvec2 pixel = film_pixel(args.pixels.value ? args.pixels[i] : args.first_ray + i, film);
+    const uint ray = args.pixels.value ? args.pixels[i] : args.first_ray + i;
+    const uvec2 pixel = film_pixel(ray, film);
     const float x = static_cast<float>(pixel.x) + across;
     const float y = static_cast<float>(pixel.y) + down;
     args.rays[i] = {film.position, 0.0f, film_direction(film, x, y), infinity};
+    if (args.has_lens != 0) {
+      const OnDisk lens = disk_at(sample_2d(ray, args.sample_index, SAMPLE_LENS));
+      const vec3 aside = film.lens_right * lens.x + film.lens_down * lens.y;
+      args.rays[i].origin += aside;
+      args.rays[i].direction -= aside * film.per_focus;
+    }
     args.hits[i] = {infinity, NO_TRIANGLE, 0.0f, 0.0f};
   }
 }

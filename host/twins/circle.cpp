@@ -40,6 +40,16 @@ OnCircle circle_at(float turns) {
   return circle_beside_quarter(static_cast<int>(nearest), quarters - nearest);
 }
 
+OnDisk disk_at(const glm::vec2& u) {
+  const float x = 2 * u.x - 1 + 0x1p-24f, y = 2 * u.y - 1 + 0x1p-24f;
+  if (std::fabs(x) > std::fabs(y)) {
+    const OnCircle at = circle_beside_quarter(0, 0.5f * y / x);
+    return {x * at.cos, x * at.sin, x};
+  }
+  const OnCircle at = circle_beside_quarter(0, y == 0 ? 0.0f : 0.5f * x / y);
+  return {y * at.sin, y * at.cos, y};
+}
+
 OnCircle circle_at_part(std::uint32_t part) {
   const std::uint32_t whole = (part + (1u << 29)) >> 30;
   const auto beside = static_cast<std::int32_t>(part - (whole << 30));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <glm/vec2.hpp>
 
 namespace coppice::twins {
 
@@ -13,6 +14,14 @@ struct OnCircle {
 OnCircle circle_beside_quarter(int whole, float x);
 
 OnCircle circle_at(float turns);
+
+// A point of the unit disk, evenly of u in [0, 1): Shirley and Chiu 1997, "A Low Distortion Map Between Disk
+// and Square".
+struct OnDisk {
+  float x, y;
+  float radius;  // of either sign
+};
+OnDisk disk_at(const glm::vec2& u);
 
 // `part` of a turn of 2^32.
 OnCircle circle_at_part(std::uint32_t part);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "interface/trace.h"
+#include "interface/shade.h"
 
 namespace coppice::twins {
 

@@ -1,6 +1,6 @@
 #include <bit>
 
-#include "interface/trace.h"
+#include "interface/shade.h"
 #include "twins/film_pixel.h"
 #include "twins/shading.h"
 #include "twins/tone.h"

@@ -1,4 +1,5 @@
-#include "interface/trace.h"
+#include "interface/shade.h"
+
 #include "twins/material_of.h"
 #include "twins/shading.h"
 

@@ -1,4 +1,4 @@
-#include "interface/trace.h"
+#include "interface/shade.h"
 #include "twins/film_pixel.h"
 #include "twins/shading.h"
 

@@ -1,5 +1,6 @@
 #include "interface/texture_hits.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "twins/texture.h"
@@ -40,7 +41,8 @@ class HitTextures {
 }  // namespace
 
 void texture_hits(const TextureHitsArgs& args) {
-  for (uint i = 0; i < args.ray_count; ++i) {
+  const uint count = args.count_at.value != 0 ? std::min(args.count_at[0], args.ray_count) : args.ray_count;
+  for (uint i = 0; i < count; ++i) {
     const Hit hit = args.hits[i];
     if (hit.triangle == NO_TRIANGLE) continue;
     const uint which = args.material_index[hit.triangle];

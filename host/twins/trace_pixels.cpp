@@ -2,7 +2,7 @@
 #include <limits>
 #include <vector>
 
-#include "interface/trace.h"
+#include "interface/shade.h"
 #include "twins/film_pixel.h"
 #include "twins/shading.h"
 #include "twins/trace_counts.h"

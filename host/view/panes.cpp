@@ -1,5 +1,4 @@
 #include <imgui.h>
-#include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
 #include <algorithm>
@@ -75,14 +74,8 @@ void Viewer::scene_pane() {
   ImGui::SetNextWindowSize({pane_width, 0});
   ImGui::Begin("scene", nullptr, fixed_pane);
   ImGui::PushItemWidth(190);
-  // Dear ImGui does not see a key that goes down and up between two frames.
-  bool entered = ImGui::InputText("scene", &typed_scene_,
-                                  ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
-  if (ImGui::IsItemActive() && request_.enter) {
-    entered = true;
-    ImGui::ClearActiveID();
-  }
-  request_.enter = false;
+  const bool entered = ImGui::InputText(
+      "scene", &typed_scene_, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
   if (entered && !typed_scene_.empty()) asked_.scene.spec = typed_scene_;
   if (ImGui::BeginCombo("built in", "choose", ImGuiComboFlags_HeightLarge)) {
     for (const SceneListing& listing : list_scenes()) {

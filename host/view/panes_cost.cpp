@@ -46,10 +46,13 @@ void Viewer::cost_pane() {
     ImGui::Text("%.1f steps a ray, %.0f %% hit",
                 static_cast<double>(counts.steps) / static_cast<double>(counts.rays),
                 100.0 * static_cast<double>(counts.hits) / static_cast<double>(counts.rays));
-  const TraceCounts& shadow = statistics_.last.shadow;
-  if (shadow.rays != 0)
-    ImGui::Text("%.2f M shadow rays, %.0f %% blocked", static_cast<double>(shadow.rays) * 1e-6,
-                100.0 * static_cast<double>(shadow.hits) / static_cast<double>(shadow.rays));
+  const auto secondary = [](const char* kind, const TraceCounts& traced) {
+    if (traced.rays != 0)
+      ImGui::Text("%.2f M %s rays, %.0f %% blocked", static_cast<double>(traced.rays) * 1e-6, kind,
+                  100.0 * static_cast<double>(traced.hits) / static_cast<double>(traced.rays));
+  };
+  secondary("shadow", statistics_.last.shadow);
+  secondary("occlusion", statistics_.last.occlusion);
   tree_controls();
   if (ImGui::CollapsingHeader("memory")) {
     ImGui::Text("%s on the device", size_text(frames_->device_bytes()).c_str());

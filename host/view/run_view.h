@@ -40,13 +40,13 @@ struct ViewReport {
   std::vector<double> frame_ms, device_ms;  // of the last of them
   std::uint64_t image_hash = 0;
   std::vector<std::string> validation_messages;
-  bool work_left = false;  // a scene is still being opened by a thread, which ends with the program
 };
 Json to_json(const ViewReport& report);
 
-// Opens the window, and returns when it is closed. A device that is lost is made anew, unless it is lost
-// again before it has shown a picture. Throws InputError for a scene at the beginning that cannot be opened,
-// DeviceError where there is no display, no device that presents, or it fails, and Interrupted.
+// Opens the window, and returns when it is closed, even where a scene is still being opened: by a loose
+// thread, see pipeline/loose_thread.h. A device that is lost is made anew, unless it is lost again before it
+// has shown a picture. Throws InputError for a scene at the beginning that cannot be opened, DeviceError
+// where there is no display, no device that presents, or it fails, and Interrupted.
 ViewReport run_view(const ViewRun& run, const Note& note);
 
 }  // namespace coppice

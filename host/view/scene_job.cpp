@@ -2,7 +2,8 @@
 
 #include <exception>
 #include <mutex>
-#include <thread>
+
+#include "pipeline/loose_thread.h"
 
 namespace coppice {
 
@@ -16,7 +17,7 @@ void SceneJob::start(const SceneOptions& scene, const BuilderChoice& builder) {
   what_ = builder.on_device() ? "opening " + scene.spec
                               : "opening " + scene.spec + ", building by " + builder.name;
   work_ = std::make_shared<Work>();
-  std::thread([work = work_, scene, builder] {
+  start_loose_thread([work = work_, scene, builder] {
     Result result;
     try {
       result.opened = std::make_unique<OpenedScene>(open_for_view(scene, builder));
@@ -28,7 +29,7 @@ void SceneJob::start(const SceneOptions& scene, const BuilderChoice& builder) {
     const std::lock_guard lock(work->mutex);
     work->result = std::move(result);
     work->done = true;
-  }).detach();
+  });
 }
 
 SceneJob::Result SceneJob::take() {

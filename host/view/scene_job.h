@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "view/view_frames.h"
+#include "view/opened_scene.h"
 
 namespace coppice {
 
@@ -14,7 +14,7 @@ class SceneJob {
   SceneJob() = default;
   SceneJob(const SceneJob&) = delete;
 
-  // Where one is under way at the end, its thread goes on by itself with what is its own.
+  // Where one is under way at the end, its loose thread goes on with what is its own.
   ~SceneJob() = default;
 
   void start(const SceneOptions& scene, const BuilderChoice& builder);

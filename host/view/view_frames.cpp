@@ -1,15 +1,12 @@
 #include "view/view_frames.h"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "analysis/quality.h"
 #include "measure/show_frame.h"
 #include "pipeline/bounded_submits.h"
 #include "render/moving_tree.h"
-#include "render/scene_room.h"
-#include "scene/texture.h"
 #include "stages/errors.h"
 
 namespace coppice {
@@ -19,13 +16,14 @@ namespace {
 // Kernels that a reader takes for one; else a kernel is a group of its own.
 std::string group_of(std::string_view stage) {
   constexpr std::pair<std::string_view, const char*> prefixes[] = {
-      {"vertex_", "vertices"},    {"gather_", "bounds"},   {"primitive_", "bounds"},
-      {"sort_", "sort"},          {"ploc_", "PLOC"},       {"hploc_", "H-PLOC"},
-      {"wide_", "wide"},          {"trace_", "trace"},     {"morton_", "Morton"},
-      {"refit_", "refit"},        {"camera_", "camera"},   {"move_", "instances"},
-      {"instance_", "instances"}, {"copy_", "instances"},  {"place_", "instances"},
-      {"shadow_", "shadows"},     {"scan_", "shadows"},    {"prefix_", "shadows"},
-      {"shade_lights", "lights"}, {"texture_", "textures"}};
+      {"vertex_", "vertices"},     {"gather_", "bounds"},    {"primitive_", "bounds"},
+      {"sort_", "sort"},           {"ploc_", "PLOC"},        {"hploc_", "H-PLOC"},
+      {"wide_", "wide"},           {"trace_", "trace"},      {"morton_", "Morton"},
+      {"refit_", "refit"},         {"camera_", "camera"},    {"move_", "instances"},
+      {"instance_", "instances"},  {"copy_", "instances"},   {"place_", "instances"},
+      {"shadow_", "shadows"},      {"scan_", "shadows"},     {"prefix_", "shadows"},
+      {"shade_lights", "lights"},  {"texture_", "textures"}, {"occlusion_", "ambient"},
+      {"shade_ambient", "ambient"}};
   for (const auto& [prefix, name] : prefixes) {
     if (stage.starts_with(prefix)) return name;
   }
@@ -57,52 +55,7 @@ std::vector<std::string> mark_groups(std::vector<Step>& steps) {
   return groups;
 }
 
-// Without a tree there are no shadows, and all is solid.
-EffectSet effects_for_view(const SceneOptions& options, const BuilderChoice& builder, const Scene& scene) {
-  EffectSet effects = effects_of(scene, options.effects);
-  if (builder.on_device() || builder.name != "none") return effects;
-  for (const Effect effect : {Effect::shadows, Effect::alpha}) {
-    if (effects.has(effect)) effects.override(effect, false);
-  }
-  return effects;
-}
-
 }  // namespace
-
-bool keeps_instances(const BuilderChoice& builder, const WalkChoice& walk) {
-  return builder.on_device() && walk.allows_binary();
-}
-
-OpenedScene open_for_view(const SceneOptions& options, const BuilderChoice& builder) {
-  OpenedScene opened;
-  opened.options = options;
-  opened.builder = builder;
-  SceneOptions kept = options;
-  kept.keep_instances = true;
-  const auto open = [&] {
-    Scene scene = open_scene_with_room(kept, nullptr, {}, [](const std::string&) {});
-    if (!options.effects.turns_off(Effect::alpha)) find_cut_outs(scene);
-    return scene;
-  };
-  opened.scene = open();
-  opened.has_instances = !opened.scene.instances.empty();
-  kept.keep_instances =
-      options.keep_instances && !effects_of(opened.scene, options.effects).needs_one_level();
-  if (opened.has_instances && !kept.keep_instances) opened.scene = open();
-  opened.arrays = scene_arrays(opened.scene, effects_for_view(options, builder, opened.scene));
-  for (const std::string& warning : opened.arrays.image_warnings()) opened.scene.warnings.push_back(warning);
-  opened.box = box_of_scene(opened.scene, opened.arrays);
-  if (builder.on_device()) return opened;
-  const auto start = std::chrono::steady_clock::now();
-  const BuilderConfig config{.radius = builder.radius,
-                             .morton_bits = builder.bits_for(opened.arrays.triangles),
-                             .leaf_size = builder.leaf_size};
-  opened.bvh = find_cpu_builder(builder.name).build(opened.arrays.triangles, config);
-  check_height(opened.bvh);
-  opened.build_ms =
-      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  return opened;
-}
 
 FramePlan ViewFrames::plan_all(ViewFrames& frames, CheckedDevice& device) {
   const OpenedScene& opened = frames.opened_;
@@ -287,9 +240,11 @@ ViewedFrame ViewFrames::take() {
   frame.counts = counts_of(executor_.read(plan_.trace.counters)[0]);
   if (plan_.trace.lights.counters.count > 0)
     frame.shadow = counts_of(executor_.read(plan_.trace.lights.counters)[0]);
+  if (plan_.trace.lights.occlusion_counters.count > 0)
+    frame.occlusion = counts_of(executor_.read(plan_.trace.lights.occlusion_counters)[0]);
   if (frame.built || frame.refitted)
     chooser_.note({frame.built, under_way_->in_vain, update_ms, frame.device_ms - update_ms,
-                   frame.counts.steps + frame.shadow.steps});
+                   frame.counts.steps + frame.shadow.steps + frame.occlusion.steps});
   if (plan_.trace.show.range.count > 0)
     frame.seen = seen_in(executor_.read(plan_.trace.show.range)[0], options_.show.show);
   const ViewedFrame taken = std::move(frame);

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "measure/builder_choice.h"
 #include "pipeline/checked_device.h"
 #include "pipeline/refit.h"
 #include "render/frame.h"
@@ -13,29 +12,10 @@
 #include "render/moving_vertices.h"
 #include "render/show.h"
 #include "render/update_chooser.h"
-#include "scene/scene_source.h"
 #include "stages/gpu_executor.h"
+#include "view/opened_scene.h"
 
 namespace coppice {
-
-// A scene that has been opened, and its tree where the host builds that.
-struct OpenedScene {
-  SceneOptions options{};
-  Scene scene;
-  SceneArrays arrays;
-  Aabb box;
-  BuilderChoice builder{};  // with one of the host:
-  Bvh bvh{};
-  double build_ms = 0;         // that it took
-  bool has_instances = false;  // before they were flattened, where options do not keep them
-};
-
-// Whether instances are seen as such, through two levels: by builders of the device, and where the choice is
-// no wide tree. Else they are flattened.
-bool keeps_instances(const BuilderChoice& builder, const WalkChoice& walk);
-
-// Reads and makes all of it; with a builder of the device no tree. Throws as open_scene does.
-OpenedScene open_for_view(const SceneOptions& options, const BuilderChoice& builder);
 
 struct ViewOptions {
   BuilderChoice builder{};
@@ -57,7 +37,8 @@ struct ViewedFrame {
   double device_ms = 0;
   TraceCounts counts;  // of the camera's rays
   TraceCounts shadow;  // of shadow rays
-  ShowSpan seen;       // of a view with a range
+  TraceCounts occlusion;
+  ShowSpan seen;  // of a view with a range
 };
 
 struct ViewedTree {

@@ -1,4 +1,4 @@
-#define GLFW_INCLUDE_NONE
+#define GLFW_INCLUDE_VULKAN
 #include "view/viewer.h"
 
 #include <GLFW/glfw3.h>
@@ -11,7 +11,6 @@
 #include "pipeline/interruption.h"
 #include "pipeline/verdicts.h"
 #include "scene/input_error.h"
-#include "scene/printable.h"
 
 namespace coppice {
 
@@ -92,7 +91,7 @@ bool Viewer::is_hidden() const {
 // Until something happens, where nothing goes on by itself.
 void Viewer::wait_for_events() {
   const bool moves = frames_ && ((plays_ && frames_->can_move()) || asked_.rebuild || asked_.draws_always);
-  const bool still = frames_ && !moves && !picture_old_;
+  const bool still = frames_ && !moves && !picture_old_ && !typed_keys_.any_left();
   if (is_hidden()) {
     glfwWaitEventsTimeout(0.1);
   } else if (still || !frames_) {
@@ -103,7 +102,6 @@ void Viewer::wait_for_events() {
 }
 
 ViewReport Viewer::run() {
-  const InterruptionGuard guard;
   check_device();
   start_scene();
   last_turn_ = ViewClock::now();
@@ -144,8 +142,10 @@ void Viewer::turn() {
 
 // With the panes over it.
 bool Viewer::show_picture() {
+  typed_keys_.begin_frame();
   screen_->begin();
   panes();
+  typed_keys_.end_frame(window_.handle());
   take_picture();
   PicturePlace picture;
   if (frames_) picture = {frames_->image_buffer(), frames_->image().place.offset, width_, height_};
@@ -182,9 +182,9 @@ void Viewer::take_scene() {
   refused_ = {};
   opened_ = std::move(result.opened);
   complaint_.clear();
-  for (const std::string& warning : opened_->scene.warnings)
-    std::fprintf(stderr, "warning: %s\n", printable(std::string_view(warning)).c_str());
   if (!is_new) return;
+  for (const std::string& warning : opened_->scene.warnings)
+    std::fprintf(stderr, "warning: %s\n", warning.c_str());
   if (presented_ > 0) camera_numbers_.clear();
   camera_.reset();
   seconds_ = 0;

@@ -11,6 +11,7 @@
 #include "view/run_view.h"
 #include "view/scene_job.h"
 #include "view/screen.h"
+#include "view/typed_keys.h"
 #include "view/view_frames.h"
 #include "view/window.h"
 
@@ -60,7 +61,7 @@ class Viewer {
   ViewReport run();
 
   // Input.
-  void on_key(int key, int mods);
+  void on_key(int key, bool repeats);
   void on_character(unsigned int character);
   void on_button(int button, bool down, bool shift);
   void on_cursor(double x, double y);
@@ -69,7 +70,7 @@ class Viewer {
 
  private:
   struct Request {
-    bool picture = false, camera = false, reset = false, rebuild = false, enter = false;
+    bool picture = false, camera = false, reset = false, rebuild = false;
   };
   struct Drag {
     double x = 0, y = 0;  // in pixels since the last frame
@@ -150,6 +151,8 @@ class Viewer {
   double zooms_ = 0;
   int dragging_ = 0;  // 0: nothing, 1: turning, 2: panning
   double cursor_x_ = 0, cursor_y_ = 0;
+  TypedKeys typed_keys_;
+  std::vector<int> pressed_;  // keys, since the last frame
   bool flies_ = false, plays_ = true, panes_ = true, help_ = false;
   double seconds_ = 0, drawn_seconds_ = 0;  // of the scene
   std::chrono::steady_clock::time_point last_turn_, last_description_, submit_time_;

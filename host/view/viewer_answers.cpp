@@ -1,4 +1,4 @@
-#define GLFW_INCLUDE_NONE
+#define GLFW_INCLUDE_VULKAN
 #include <GLFW/glfw3.h>
 
 #include <filesystem>
@@ -81,7 +81,6 @@ ViewReport Viewer::report() {
   report.height = height_;
   report.frame_ms = frame_ms_;
   report.device_ms = device_ms_;
-  report.work_left = job_.is_under_way();
   if (opened_) report.triangles = opened_->arrays.triangle_count();
   if (frames_) {
     report.walk = name_of(frames_->walk());

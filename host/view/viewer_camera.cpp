@@ -1,6 +1,5 @@
-#define GLFW_INCLUDE_NONE
+#define GLFW_INCLUDE_VULKAN
 #include <GLFW/glfw3.h>
-#include <imgui.h>
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +22,9 @@ double size_of(const Aabb& box) {
 void Viewer::move_camera(double seconds) {
   if (!frames_) return;
   const auto held = [&](int key) {
-    return !ImGui::GetIO().WantTextInput && glfwGetKey(window_.handle(), key) == GLFW_PRESS ? 1 : 0;
+    const bool down =
+        glfwGetKey(window_.handle(), key) == GLFW_PRESS || std::ranges::find(pressed_, key) != pressed_.end();
+    return down && !typed_keys_.has_field() ? 1 : 0;
   };
   const double speed = 0.25 * seconds * (held(GLFW_KEY_LEFT_SHIFT) ? 4 : 1);
   const double forward = speed * (held(GLFW_KEY_W) - held(GLFW_KEY_S));
@@ -61,6 +62,7 @@ void Viewer::move_camera(double seconds) {
   }
   turns_ = pans_ = {};
   zooms_ = 0;
+  pressed_.clear();
 }
 
 void Viewer::move_time(double seconds) {
@@ -86,7 +88,8 @@ std::vector<double> Viewer::camera_now() const {
 Film Viewer::film_at_time() const {
   const Scene& scene = opened_->scene;
   if (camera_numbers_.empty() && camera_moves())
-    return make_film(*pose_at(*scene.motion, seconds_).camera, width_, height_, run_.trace.samples);
+    return make_film(*pose_at(*scene.motion, seconds_).camera, scene.lens, width_, height_,
+                     run_.trace.samples);
   return make_film(scene, camera_numbers_, width_, height_, run_.trace.samples);
 }
 

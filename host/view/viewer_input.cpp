@@ -1,4 +1,4 @@
-#define GLFW_INCLUDE_NONE
+#define GLFW_INCLUDE_VULKAN
 #include <GLFW/glfw3.h>
 #include <imgui.h>
 
@@ -14,8 +14,8 @@ Viewer& viewer_of(GLFWwindow* window) { return *static_cast<Viewer*>(glfwGetWind
 
 // Before Dear ImGui's own, which hand on what they get.
 void set_callbacks(GLFWwindow* window) {
-  glfwSetKeyCallback(window, [](GLFWwindow* its, int key, int, int action, int mods) {
-    if (action != GLFW_RELEASE) viewer_of(its).on_key(key, mods);
+  glfwSetKeyCallback(window, [](GLFWwindow* its, int key, int, int action, int) {
+    if (action != GLFW_RELEASE) viewer_of(its).on_key(key, action == GLFW_REPEAT);
   });
   glfwSetCharCallback(
       window, [](GLFWwindow* its, unsigned int character) { viewer_of(its).on_character(character); });
@@ -38,9 +38,12 @@ const Window& Viewer::with_input(const Window& window) {
   return window;
 }
 
-void Viewer::on_key(int key, int) {
-  if (key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER) request_.enter = true;
-  if (ImGui::GetIO().WantTextInput) return;
+void Viewer::on_key(int key, bool repeats) {
+  if (typed_keys_.has_field()) {
+    if (!repeats) typed_keys_.add(key);
+    return;
+  }
+  pressed_.push_back(key);
   switch (key) {
     case GLFW_KEY_ESCAPE:
       if (help_) {
@@ -86,7 +89,7 @@ void Viewer::on_key(int key, int) {
 
 // Wherever the layout of the keyboard has it.
 void Viewer::on_character(unsigned int character) {
-  if (character == '?' && !ImGui::GetIO().WantTextInput) help_ = !help_;
+  if (character == '?' && !typed_keys_.has_field()) help_ = !help_;
 }
 
 void Viewer::on_button(int button, bool down, bool shift) {

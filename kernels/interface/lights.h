@@ -2,7 +2,7 @@
 #ifndef COPPICE_INTERFACE_LIGHTS_H
 #define COPPICE_INTERFACE_LIGHTS_H
 #include "copy.h"
-#include "trace.h"
+#include "shade.h"
 INTERFACE_BEGIN
 
 const uint SHADOW_MARKS_GROUP = 64;

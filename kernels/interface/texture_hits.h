@@ -1,8 +1,8 @@
 // Materials of hits, with what their textures have there.
 #ifndef COPPICE_INTERFACE_TEXTURE_HITS_H
 #define COPPICE_INTERFACE_TEXTURE_HITS_H
+#include "shade.h"
 #include "texture.h"
-#include "trace.h"
 INTERFACE_BEGIN
 
 const uint TEXTURE_HITS_GROUP = 64;
@@ -33,6 +33,7 @@ struct TextureHitsArgs {
   READS(RayBuffer) rays;                  // ray_count
   READS(HitBuffer) hits;                  // ray_count
   SurfaceMaterialBuffer hit_materials;    // out, ray_count
+  READS(UintBuffer) count_at;             // as in TraceClosestArgs
   uint ray_count;
   uint padding;
 };

@@ -8,10 +8,6 @@ const uint TRACE_GROUP = 64;
 const uint TRACE_PACKET = 64;  // rays that trace_wide takes through the tree together
 const uint TRACE_BLOCK = 128;  // rays of a subgroup of trace_wide_single
 const uint BOUNCE_RAYS_GROUP = 64;
-const uint SHADE_GROUP = 64;
-const uint SHADE_PIXELS_PER_INVOCATION = 8;
-const uint SHADE_PIXELS_TILE = SHADE_GROUP * SHADE_PIXELS_PER_INVOCATION;
-const uint RESOLVE_GROUP = 64;
 
 const uint TRACE_STACK_LIMIT = 256;    // most entries of a traversal stack
 const uint BRUTE_FORCE_SLICE = 16384;  // triangles one dispatch tests, below old lavapipe's loop limit
@@ -27,13 +23,6 @@ const uint TRIANGLE_FAST = 0;        // Moller and Trumbore 1997
 const uint TRIANGLE_WATERTIGHT = 1;  // Woop, Benthin and Wald 2013
 const uint BOX_FAST = 0;             // slabs as they come
 const uint BOX_ROBUST = 1;           // slabs widened by the error bound, after Ize 2013
-
-// How radiance becomes what a display shows.
-const uint TONE_NONE = 0;         // as it is
-const uint TONE_REINHARD = 1;     // Reinhard et al. 2002, on luminance, with TONE_WHITE
-const uint TONE_ACES = 2;         // Hill's fit of the transforms of ACES
-const float TONE_WHITE = 4.0;     // the luminance that becomes 1
-const float TONE_MOST = 65536.0;  // what channels above it count as
 
 // A ray hits nothing with a NaN, an infinite origin or direction, an empty range (t_min > t_max), or a
 // direction whose components are all zero or denormal. Components that are denormal or below 2^-64 of the
@@ -63,7 +52,9 @@ struct BoxCandidate {
 const uint FILM_STRIP = 8;
 
 // Pinhole camera: a ray through film coordinates (x, y) in [0, width) x [0, height) has the direction
-// corner + x * right + y * down.
+// corner + x * right + y * down, of which t counts depths. Through a point (a, b) of the unit disk of a thin
+// lens it starts at position + aside, aside = a * lens_right + b * lens_down, and goes where the pinhole's
+// ray is in focus: in the direction of that ray - aside * per_focus.
 struct Film {
   vec3 position;
   uint width;
@@ -73,22 +64,15 @@ struct Film {
   uint samples;
   vec3 down;
   uint is_sequence;  // 0: samples are a set of so many; 1: the first of a sequence, whatever their number
+  vec3 lens_right;   // of the length of the lens's radius, as is lens_down
+  float per_focus;   // 1 by the depth that is in focus
+  vec3 lens_down;
+  uint padding;
 };
 
-struct SurfaceMaterial {
-  vec3 ambient;  // emission and ambient light, already multiplied
-  vec3 diffuse;  // diffuse colour times the light's radiance
-};
-
-// The directional light and the background, linear RGB.
-struct Lighting {
-  vec3 light_direction;  // unit, towards the light
-  float padding0;
-  vec3 sky_horizon;
-  float padding1;
-  vec3 sky_zenith;
-  float padding2;
-};
+// Dimensions of lib/sampler.glsl, each one use in a picture.
+const uint SAMPLE_LENS = 0x10000u;
+const uint SAMPLE_OCCLUSION = 0x10001u;
 
 // Counted on the device; 64-bit sums as (low, high) words. Steps are pairs of binary nodes that rays visit,
 // or wide nodes that they, or their packets, visit.
@@ -101,8 +85,6 @@ INTERFACE_BUFFER(RayBuffer, Ray, 16)
 INTERFACE_BUFFER(HitBuffer, Hit, 16)
 INTERFACE_BUFFER(BoxCandidateBuffer, BoxCandidate, 8)
 INTERFACE_BUFFER(FilmBuffer, Film, 16)
-INTERFACE_BUFFER(SurfaceMaterialBuffer, SurfaceMaterial, 8)
-INTERFACE_BUFFER(LightingBuffer, Lighting, 16)
 INTERFACE_BUFFER(TraceCountersBuffer, TraceCounters, 16)
 INTERFACE_BUFFER(Vec3Buffer, vec3, 4)
 
@@ -114,7 +96,7 @@ struct CameraRaysArgs {
   uint first_ray;            // of the picture
   uint ray_count;
   uint sample_index;
-  uint padding;
+  uint has_lens;  // as in CameraRaysConstants
 };
 
 // Rays of a trace: `ray_count`, or where there is a `count_at` what its word says, if that is less; no others
@@ -248,62 +230,6 @@ struct BounceRaysArgs {
   uint seed;
 };
 
-struct ShadeArgs {
-  READS(TriangleBuffer) triangles;
-  READS(UintBuffer) material_index;  // one a triangle; null: `materials` are one a ray
-  READS(SurfaceMaterialBuffer) materials;
-  READS(LightingBuffer) lighting;
-  READS(RayBuffer) rays;
-  READS(HitBuffer) hits;
-  Vec3Buffer radiance;  // ray_count; summed over the samples
-  uint ray_count;
-  uint sample_index;
-};
-
-// Of pictures of one sample a pixel.
-struct ShadePixelsArgs {
-  READS(FilmBuffer) film;
-  READS(TriangleBuffer) triangles;
-  READS(UintBuffer) material_index;  // one a triangle
-  READS(SurfaceMaterialBuffer) materials;
-  READS(LightingBuffer) lighting;
-  READS(HitBuffer) hits;              // ray_count
-  READS(UintBuffer) srgb_thresholds;  // as in ResolveArgs
-  UintBuffer image;                   // as in ResolveArgs
-  uint first_ray;                     // of the picture
-  uint ray_count;
-};
-
-// The same pictures through a wide tree, watertight and robust, with no ray and no hit kept.
-struct TracePixelsArgs {
-  READS(WideNodeBuffer) wide_nodes;  // these three as in TraceWideArgs
-  READS(WideCountsBuffer) wide_counts;
-  READS(NodeBuffer) nodes;
-  READS(TriangleBuffer) triangles;
-  TraceCountersBuffer counters;
-  BuildStateBuffer state;
-  READS(FilmBuffer) film;  // this and what follows as in ShadePixelsArgs
-  READS(UintBuffer) material_index;
-  READS(SurfaceMaterialBuffer) materials;
-  READS(LightingBuffer) lighting;
-  READS(UintBuffer) srgb_thresholds;
-  UintBuffer image;
-  uint first_ray;
-  uint ray_count;
-};
-
-struct ResolveArgs {
-  READS(FilmBuffer) film;
-  READS(Vec3Buffer) radiance;         // one a ray
-  READS(UintBuffer) sample_counts;    // one a ray; null: all have as many as the film says
-  READS(UintBuffer) srgb_thresholds;  // 256 floats as bits: the least linear value of each 8-bit sRGB code
-  UintBuffer image;                   // RGBA8, red in the low byte, rows top to bottom
-  uint first_ray;
-  uint ray_count;
-  uint exposure;    // the bits of a float, by which radiance is multiplied
-  uint tone_curve;  // TONE_
-};
-
 // Specialization constants; what is an argument, too, has the same value there.
 struct TraceClosestConstants {
   uint max_turns;        // of the loop; a tree has fewer pairs than triangles, so this binds only on a driver
@@ -322,11 +248,6 @@ struct TraceWideConstants {
   uint counts_rays;
 };
 
-struct TracePixelsConstants {
-  uint max_turns;
-  uint directional_light;  // as in ShadeConstants
-};
-
 struct TraceCandidatesConstants {
   uint max_turns;  // of all loops
   uint stack_entries;
@@ -338,17 +259,8 @@ struct TraceBruteForceConstants {
 };
 
 struct CameraRaysConstants {
-  uint is_list;  // 0 where there are no pixels
-};
-
-struct ResolveConstants {
-  uint has_counts;  // 0 where there are no sample_counts
-  uint tone_curve;
-  uint is_exposed;  // 0 where the exposure is 1
-};
-
-struct ShadeConstants {
-  uint directional_light;  // 0 where the scene has none
+  uint is_list;   // 0 where there are no pixels
+  uint has_lens;  // 0: a pinhole
 };
 
 INTERFACE_END

@@ -1,6 +1,7 @@
 // Directions that lib/bsdf.glsl samples. Polynomials for cosine and sine, see docs/numerics.md.
 #ifndef COPPICE_LIB_BSDF_DIRECTIONS
 #define COPPICE_LIB_BSDF_DIRECTIONS
+#include "lib/disk_point.glsl"
 #include "lib/exact_vector.glsl"
 #include "lib/turn.glsl"
 
@@ -24,18 +25,12 @@ vec3 bsdf_from_frame(vec3 normal, BsdfFrame frame, vec3 v) {
   return unit(direction);
 }
 
-// By the cosine to the normal: the concentric map of Shirley and Chiu 1997, "A Low Distortion Map Between Disk and
-// Square", lifted to the hemisphere. For u in multiples of 2^-24 the cosine is at least 2^-11.5.
+// By the cosine to the normal: a point of the disk, lifted to the hemisphere. For u in multiples of 2^-24 the cosine is
+// at least 2^-11.5.
 vec3 bsdf_diffuse_direction(vec3 normal, vec2 u) {
-  precise vec2 place = 2.0 * u - 1.0 + 5.9604644775390625e-8;  // to the middle: an odd multiple of 2^-24
-  bool across = abs(place.x) > abs(place.y);
-  float radius = across ? place.x : place.y;
-  float other = across ? place.y : place.x;
-  precise float angle = radius == 0.0 ? 0.0 : 0.5 * other / radius;
-  vec2 turned = quarter_turns(0u, angle);
-  precise vec2 disk = radius * (across ? turned : turned.yx);
-  precise float height = sqrt(max((1.0 - radius) * (1.0 + radius), 0.0));
-  return bsdf_from_frame(normal, bsdf_frame(normal), vec3(disk, height));
+  vec3 disk = disk_point(u);
+  precise float height = sqrt(max((1.0 - disk.z) * (1.0 + disk.z), 0.0));
+  return bsdf_from_frame(normal, bsdf_frame(normal), vec3(disk.xy, height));
 }
 
 // The normal of a facet as the view sees facets; unit, on the side of the normal.

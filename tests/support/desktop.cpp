@@ -69,6 +69,8 @@ Process::~Process() {
 std::string Process::out() const { return text_of_file(name_ + ".out"); }
 std::string Process::err() const { return text_of_file(name_ + ".err"); }
 
+void Process::send(int signal) const { kill(pid_, signal); }
+
 bool Process::has_ended() {
   int status = 0;
   if (!status_ && waitpid(pid_, &status, WNOHANG) == pid_)

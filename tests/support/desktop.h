@@ -28,6 +28,7 @@ class Process {
   std::string out() const;
   std::string err() const;
   bool has_ended();
+  void send(int signal) const;
 
   // The exit status, or nothing if it does not end within the limit; -1 for an end by a signal.
   std::optional<int> wait();

@@ -18,6 +18,8 @@
 #include "support/instances.h"
 #include "support/masked_scene.h"
 #include "support/moving_scenes.h"
+#include "support/path_scene.h"
+#include "support/textured_scene.h"
 
 namespace coppice {
 namespace {
@@ -34,6 +36,7 @@ struct Frame {
   bool lights = false;   // two, which cast shadows
   bool refines = false;  // as a picture whose error is estimated
   bool textures = false;
+  bool paths = false;  // of all lobes
   bool alpha = false;  // with lights
 };
 constexpr Frame frames[] = {
@@ -48,21 +51,25 @@ constexpr Frame frames[] = {
     {300, DeviceBuilder::ploc, true, Walk::wide_single, SHOW_COLOR, 1, true, true},
     {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 2, true, false, true},
     {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 1, true, false, false, true},
-    {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 1, true, true, false, false, true},
-    {300, DeviceBuilder::ploc, true, Walk::wide_packets, SHOW_COLOR, 1, true, true, false, false, true},
-    {300, DeviceBuilder::ploc, true, Walk::wide_single, SHOW_COLOR, 1, true, true, false, false, true}};
+    {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 1, true, false, false, false, true},
+    {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 1, true, true, false, false, false, true},
+    {300, DeviceBuilder::ploc, true, Walk::wide_packets, SHOW_COLOR, 1, true, true, false, false, false, true},
+    {300, DeviceBuilder::ploc, true, Walk::wide_single, SHOW_COLOR, 1, true, true, false, false, false, true}};
 constexpr std::size_t scan_and_copy = std::size(frames), inputs = scan_and_copy + 1, vertices = inputs + 1,
                       refits = vertices + 1, instances = refits + 1, chain_count = instances + 1;
 
 Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
   Scene scene = frame.alpha      ? masked_scene(frame.triangles)
                 : frame.lights   ? triangles_over_plane(frame.triangles)
+                : frame.paths    ? room_of_all_surfaces()
                 : frame.textures ? textured_scene(frame.triangles)
                                  : find_hard_case("nested")->make(frame.triangles, 1);
   if (frame.lights) {
     scene.light.shadows = true;
     scene.more_lights.push_back({.is_point = true, .place = {1, 3, 2}, .shadows = true, .origin = ""});
   }
+  if (frame.refines) scene.lens.aperture = 0.1f;
+  if (frame.lights) scene.occlusion = AmbientOcclusion{2};
   SceneArrays arrays = scene_arrays(scene, effects_of(scene));
   arrays.lighting = {};  // padding and all
   if (!frame.lights) arrays.lighting.light_direction = {0.6f, 0.8f, 0};
@@ -80,6 +87,8 @@ Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
   trace_options.keep_noise = trace_options.adaptive = frame.refines;
   trace_options.lights = arrays.light_counts;
   trace_options.textures = arrays.texture_counts();
+  trace_options.lens = arrays.lens;
+  trace_options.paths = arrays.paths.counts;
   trace_options.alpha = arrays.alpha_counts();
   std::optional<WidePlan> wide;
   if (is_wide(frame.walk)) wide = plan_wide(layout, build, &build);
