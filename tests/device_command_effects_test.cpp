@@ -255,6 +255,29 @@ TEST_F(CommandEffects, AColourMapThatIsACutOutIsSeenAsOne) {
   EXPECT_TRUE(report_of("lockstep leaf.obj")["equal"]);
 }
 
+TEST_F(CommandEffects, PathsAreCountedByWhatTheyMeetAndTakeATree) {
+  write("mirror.mtl", "newmtl mirror\nKd 0.5 0.5 0.5\nKs 0.5 0.5 0.5\nillum 3\nnewmtl lamp\nKe 1 1 1\n");
+  write("mirror.obj",
+        "mtllib mirror.mtl\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nv -1 0 5\nv 1 0 5\nv 0 2 5\n"
+        "usemtl mirror\nf 1 2 3\nusemtl lamp\nf 4 5 6\n");
+  const std::string render = "render mirror.obj -o out.png --camera 0,0,3,0,0,0";
+  const json seen = report_of(render);
+  EXPECT_GT(seen["rays"]["reflection"], 0);
+  EXPECT_GT(seen["rays"]["shadow"], 0);
+  EXPECT_EQ(seen["rays"]["refraction"], 0);
+  EXPECT_EQ(seen["rays"]["diffuse"], 0);
+  EXPECT_EQ(report_of(render + " --bounces 0")["rays"]["reflection"], 0);
+  EXPECT_GT(report_of(render + " --effects +global_illumination")["rays"]["diffuse"], 0);
+  EXPECT_EQ(report_of(render + " --tracer cpu --builder ploc")["rays"]["reflection"],
+            seen["rays"]["reflection"]);
+  EXPECT_TRUE(report_of("lockstep mirror.obj --camera 0,0,3,0,0,0")["equal"]);
+  fs::remove("out.png");
+  expect_refused(render + " --builder none", 1,
+                 "--builder none: paths of light are traced through a tree, which takes another builder "
+                 "(--effects=-emission,-reflection goes without)");
+  expect_refused(render + " --bounces 65", 2, "--bounces");
+}
+
 TEST_F(CommandEffects, AnimateAndLockstepTakeThem) {
   const json frames = report_of("animate scene.json --frames 2");
   EXPECT_NE(frames["frame_hashes"],

@@ -166,7 +166,14 @@ TEST(Effects, WhatEmitsReflectsOrLetsLightThroughCallsForPaths) {
   Material lamp = named("lamp");
   lamp.emission = {0, 1, 0};
   EXPECT_EQ(caller(made_of(lamp), Effect::emission), "material 'lamp', which emits light");
-  EXPECT_EQ(caller(made_of(lamp), Effect::shadows), "material 'lamp', whose light casts them");
+  EXPECT_EQ(caller(made_of(lamp), Effect::shadows), "material 'lamp', which emits light");
+  const auto has_shadows = [&](const char* changes) {
+    return effects_of(made_of(lamp), EffectChanges(changes)).has(Effect::shadows);
+  };
+  EXPECT_TRUE(has_shadows(""));
+  EXPECT_FALSE(has_shadows("-emission"));
+  EXPECT_FALSE(has_shadows("-shadows"));
+  EXPECT_TRUE(has_shadows("-emission,+shadows"));
   lamp.is_unlit = true;
   EXPECT_EQ(caller(made_of(lamp), Effect::emission), "");
   for (const int illum : {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}) {

@@ -136,6 +136,11 @@ class RenderCommand : public Command {
   // Without one the device traces no shadows, and looks at no alpha.
   void check_tree(const EffectSet& effects) const {
     if (builder_.name != "none" || show_.show != Show::color || !traces_on_device()) return;
+    if (effects.follows_paths())
+      throw InputError(
+          "--builder none: paths of light are traced through a tree, which takes another builder "
+          "(--effects=" +
+          without(effects.path_effects()) + " goes without)");
     if (effects.has(Effect::shadows))
       throw InputError(
           "--builder none: shadows are traced through a tree, which takes another builder "

@@ -69,6 +69,10 @@ Scene open_for_effects(const SceneOptions& options, const BuilderChoice& builder
       throw InputError("scene '" + scene.name +
                        "' has instances that move, through which no occlusion rays are traced "
                        "(--effects=-ambient_occlusion goes without)");
+    if (effects.follows_paths() && moves && !scene.motion && !may_stand_still)
+      throw InputError("scene '" + scene.name +
+                       "' has instances that move, through which no paths of light are traced (--effects=" +
+                       without(effects.path_effects()) + " goes without)");
   }
   print_warnings(scene.warnings);
   return scene;

@@ -74,10 +74,7 @@ void call_for_paths(const Scene& scene, EffectSet& effects) {
     if (seen[index]) continue;
     seen[index] = true;
     const Material& material = scene.materials[index];
-    if (is_emitter(material)) {
-      effects.call(Effect::emission, quoted(material) + ", which emits light");
-      effects.call(Effect::shadows, quoted(material) + ", whose light casts them");
-    }
+    if (is_emitter(material)) effects.call(Effect::emission, quoted(material) + ", which emits light");
     if (is_reflecting(material)) effects.call(Effect::reflection, quoted(material) + ", which reflects");
     if (transmission_of(material) > 0)
       effects.call(Effect::refraction, quoted(material) + ", through which light goes");
@@ -106,7 +103,7 @@ std::vector<Light> lights_with(const Scene& scene, const EffectSet& effects) {
 void EffectSet::call(Effect effect, const std::string& by) {
   State& state = states_[static_cast<std::size_t>(effect)];
   if (!state.called_by.empty()) return;
-  state.on = true;
+  state.on = state.on || !state.overridden;
   state.called_by = by;
 }
 
@@ -116,10 +113,25 @@ void EffectSet::override(Effect effect, bool on) {
   state.overridden = true;
 }
 
-std::string no_effects() {
+std::vector<Effect> EffectSet::path_effects() const {
+  std::vector<Effect> effects;
+  if (has(Effect::global_illumination)) effects.push_back(Effect::global_illumination);
+  for (const Effect effect : {Effect::emission, Effect::reflection, Effect::refraction}) {
+    if (is_used(effect)) effects.push_back(effect);
+  }
+  return effects;
+}
+
+std::string without(std::span<const Effect> effects) {
   std::string text;
-  for (const std::string_view name : EFFECT_NAMES) text.append(text.empty() ? "-" : ",-").append(name);
+  for (const Effect effect : effects) text.append(text.empty() ? "-" : ",-").append(name_of(effect));
   return text;
+}
+
+std::string no_effects() {
+  std::vector<Effect> all;
+  for (std::size_t i = 0; i < effect_count; ++i) all.push_back(static_cast<Effect>(i));
+  return without(all);
 }
 
 // THE TABLE of docs/effects.md, line by line.
@@ -138,7 +150,10 @@ EffectSet effects_of(const Scene& scene, const EffectChanges& changes) {
     effects.call(Effect::ambient_occlusion, "/ambient_occlusion");
   if (scene.lens.aperture > 0) effects.call(Effect::depth_of_field, scene.lens.origin);
   call_for_paths(scene, effects);
-  return changes.applied_to(effects);
+  effects = changes.applied_to(effects);
+  if (effects.is_used(Effect::emission))
+    effects.call(Effect::shadows, effects.of(Effect::emission).called_by);
+  return effects;
 }
 
 EffectChanges::EffectChanges(std::string_view text) : text_(text) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,11 +49,9 @@ class EffectSet {
   // On, and the scene has something for it: what is turned on and nothing has takes nothing.
   bool is_used(Effect effect) const { return has(effect) && !of(effect).called_by.empty(); }
 
-  // Whether light is followed along paths, in the place of being shaded where the camera's rays end.
-  bool follows_paths() const {
-    return has(Effect::global_illumination) || is_used(Effect::emission) || is_used(Effect::reflection) ||
-           is_used(Effect::refraction);
-  }
+  // Those for which light is followed along paths, in the place of being shaded where the camera's rays end.
+  std::vector<Effect> path_effects() const;
+  bool follows_paths() const { return !path_effects().empty(); }
 
   // Whether some effect takes triangles of one level: instances are then flattened.
   bool needs_one_level() const {
@@ -91,6 +90,9 @@ class EffectChanges {
   std::vector<Change> changes_;
   std::string text_;
 };
+
+// Changes that turn these off, as a text.
+std::string without(std::span<const Effect> effects);
 
 // Changes that turn all effects off.
 std::string no_effects();

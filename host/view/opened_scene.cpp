@@ -11,10 +11,11 @@ namespace coppice {
 
 namespace {
 
-// Without a tree there are no shadows and no occlusion, and all is solid.
+// Without a tree there are no shadows, no occlusion and no paths, and all is solid.
 EffectSet effects_for_view(const SceneOptions& options, const BuilderChoice& builder, const Scene& scene) {
   EffectSet effects = effects_of(scene, options.effects);
   if (builder.on_device() || builder.name != "none") return effects;
+  for (const Effect effect : effects.path_effects()) effects.override(effect, false);
   for (const Effect effect : {Effect::shadows, Effect::ambient_occlusion, Effect::alpha}) {
     if (effects.has(effect)) effects.override(effect, false);
   }
