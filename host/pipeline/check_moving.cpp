@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "interface/vertex.h"
+#include "pipeline/check_inputs.h"
 #include "pipeline/instances.h"
 #include "stages/stages.h"
 
