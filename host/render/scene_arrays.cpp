@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "render/stage_values.h"
 #include "scene/instances.h"
 
 namespace coppice {

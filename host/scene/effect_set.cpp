@@ -32,6 +32,10 @@ std::string known_effects() {
   return names;
 }
 
+std::string quoted(const Material& material) {
+  return "material '" + printable(std::string_view(material.name)) + "'";
+}
+
 // By the first triangle whose material has a map of colours.
 void call_for_textures(const Scene& scene, EffectSet& effects) {
   const auto map_of = [&](std::uint32_t index) -> const TextureMap* {
@@ -44,12 +48,8 @@ void call_for_textures(const Scene& scene, EffectSet& effects) {
   const auto mapped =
       std::ranges::find_if(scene.material_index, [&](std::uint32_t index) { return has_map[index]; });
   if (mapped == scene.material_index.end()) return;
-  effects.call(Effect::textures, "material '" + printable(std::string_view(scene.materials[*mapped].name)) +
-                                     "', which has " + printable(std::string_view(map_of(*mapped)->name)));
-}
-
-std::string quoted(const Material& material) {
-  return "material '" + printable(std::string_view(material.name)) + "'";
+  effects.call(Effect::textures, quoted(scene.materials[*mapped]) + ", which has " +
+                                     printable(std::string_view(map_of(*mapped)->name)));
 }
 
 // By the materials of triangles, in the order of triangles.
