@@ -271,6 +271,9 @@ TEST_F(CommandEffects, PathsAreCountedByWhatTheyMeetAndTakeATree) {
   EXPECT_EQ(report_of(render + " --tracer cpu --builder ploc")["rays"]["reflection"],
             seen["rays"]["reflection"]);
   EXPECT_TRUE(report_of("lockstep mirror.obj --camera 0,0,3,0,0,0")["equal"]);
+  const json moving = report_of("animate mirror.obj --camera 0,0,3,0,0,0 --frames 2")["rays"];
+  for (const char* kind : {"primary", "shadow", "reflection", "refraction", "diffuse"})
+    EXPECT_EQ(moving[kind], 2 * seen["rays"][kind].get<int>()) << kind;
   fs::remove("out.png");
   expect_refused(render + " --builder none", 1,
                  "--builder none: paths of light are traced through a tree, which takes another builder "

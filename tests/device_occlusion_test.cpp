@@ -12,6 +12,7 @@
 #include "support/moving_frames.h"
 #include "support/moving_scenes.h"
 #include "support/test_device.h"
+#include "support/traced_frame.h"
 
 namespace coppice {
 namespace {
@@ -42,15 +43,7 @@ Occluded occluded(const Scene& scene, const FrameOptions& options, const char* c
   GpuExecutor executor(test_device(), layout);
   const std::uint32_t samples = options.trace.samples;
   upload_frame(executor, plan, arrays, make_film(scene, {}, occluded_side, occluded_side, samples));
-  Chain build = executor.chain();
-  append_frame_build(build, plan);
-  append_frame_wide(build, plan);
-  executor.record(build.steps()).submit_and_wait(submit_limit_seconds);
-  for (TracePieces pieces = plan.pieces(plan.trace); !pieces.done();) {
-    Chain chain = executor.chain();
-    pieces.append(chain, work);
-    executor.record(chain.steps()).submit_and_wait(submit_limit_seconds);
-  }
+  trace_frame_in_pieces(executor, plan, work);
   Occluded result{mean_radiance(executor.read(plan.trace.radiance), occluded_side, occluded_side, samples),
                   executor.read(plan.trace.image),
                   counts_of(executor.read(plan.trace.counters)[0]),

@@ -11,6 +11,7 @@
 #include "support/path_scene.h"
 #include "support/test_device.h"
 #include "support/textured_scene.h"
+#include "support/traced_frame.h"
 
 namespace coppice {
 namespace {
@@ -51,16 +52,7 @@ PathPicture path_picture(const Scene& scene, const PathView& view) {
   const FramePlan plan = plan_frame(layout, arrays, path_options(view));
   GpuExecutor executor(test_device(), layout);
   upload_frame(executor, plan, arrays, make_film(scene, {}, view.width, view.height, view.samples));
-  Chain build = executor.chain();
-  append_frame_build(build, plan);
-  append_frame_wide(build, plan);
-  executor.record(build.steps()).submit_and_wait(submit_limit_seconds);
-  for (TracePieces pieces = plan.pieces(plan.trace); !pieces.done();) {
-    Chain chain = executor.chain();
-    pieces.append(chain, std::min<std::uint64_t>(view.work, 1u << 16));
-    executor.record(chain.steps()).submit_and_wait(submit_limit_seconds);
-  }
-  EXPECT_EQ(executor.read(plan.tree.state)[0].error_word, 0u);
+  trace_frame_in_pieces(executor, plan, std::min<std::uint64_t>(view.work, 1u << 16));
   PathPicture pictured{executor.read(plan.trace.radiance),
                        counts_of(executor.read(plan.trace.paths.bounce_counters)[0]),
                        counts_of(executor.read(plan.trace.paths.light_counters)[0]),

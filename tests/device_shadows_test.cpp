@@ -13,6 +13,7 @@
 #include "support/moving_frames.h"
 #include "support/moving_scenes.h"
 #include "support/test_device.h"
+#include "support/traced_frame.h"
 
 namespace coppice {
 namespace {
@@ -44,16 +45,7 @@ Pictured picture_of(const Scene& scene, const FrameOptions& options, const char*
   const FramePlan plan = plan_frame(layout, arrays, options);
   GpuExecutor executor(test_device(), layout);
   upload_frame(executor, plan, arrays, film_for(scene, options));
-  Chain build = executor.chain();
-  append_frame_build(build, plan);
-  append_frame_wide(build, plan);
-  executor.record(build.steps()).submit_and_wait(submit_limit_seconds);
-  for (TracePieces pieces = plan.pieces(plan.trace); !pieces.done();) {
-    Chain chain = executor.chain();
-    pieces.append(chain, work);
-    executor.record(chain.steps()).submit_and_wait(submit_limit_seconds);
-  }
-  EXPECT_EQ(executor.read(plan.tree.state)[0].error_word, 0u);
+  trace_frame_in_pieces(executor, plan, work);
   Pictured pictured{executor.read(plan.trace.image), counts_of(executor.read(plan.trace.counters)[0]), {}};
   if (plan.trace.lights.counters.count > 0)
     pictured.shadow = counts_of(executor.read(plan.trace.lights.counters)[0]);

@@ -3,39 +3,12 @@
 
 #include <algorithm>
 
-#include "measure/effects_report.h"
-#include "render/frame.h"
-#include "scene/effect_set.h"
-#include "scene/surface_effects.h"
-#include "support/scene_file_text.h"
+#include "support/effect_scenes.h"
 
 namespace coppice {
 namespace {
 
 using nlohmann::json;
-
-Scene with_lights(const std::vector<json>& lights, const json& light = nullptr) {
-  json file = with_object();
-  file["lights"] = lights;
-  if (!light.is_null()) file["light"] = light;
-  return read_scene(file);
-}
-
-Scene with_light(const json& light = json::object()) {
-  json file = with_object();
-  file["light"] = light;
-  return read_scene(file);
-}
-
-const json sun = {{"direction", {0, 2, 0}}}, lamp = {{"position", {1, 2, 3}}};
-
-json shadowed(json light) {
-  light["shadows"] = true;
-  return light;
-}
-
-// "" where it is off.
-std::string caller(const Scene& scene, Effect effect) { return effects_of(scene).of(effect).called_by; }
 
 TEST(Effects, ThePlainSceneCallsForNothing) {
   for (const Scene& scene :
@@ -148,92 +121,6 @@ TEST(Effects, ChangesOverrideWhatTheSceneCallsFor) {
   EXPECT_TRUE(off.of(Effect::shadows).overridden);
 }
 
-Material named(const char* name) {
-  Material material;
-  material.name = name;
-  return material;
-}
-
-// A scene with a triangle of that material.
-Scene made_of(const Material& material) {
-  Scene scene = with_light();
-  scene.materials.push_back(material);
-  scene.material_index.back() = static_cast<std::uint32_t>(scene.materials.size() - 1);
-  return scene;
-}
-
-TEST(Effects, WhatEmitsReflectsOrLetsLightThroughCallsForPaths) {
-  Material lamp = named("lamp");
-  lamp.emission = {0, 1, 0};
-  EXPECT_EQ(caller(made_of(lamp), Effect::emission), "material 'lamp', which emits light");
-  EXPECT_EQ(caller(made_of(lamp), Effect::shadows), "material 'lamp', which emits light");
-  const auto has_shadows = [&](const char* changes) {
-    return effects_of(made_of(lamp), EffectChanges(changes)).has(Effect::shadows);
-  };
-  EXPECT_TRUE(has_shadows(""));
-  EXPECT_FALSE(has_shadows("-emission"));
-  EXPECT_FALSE(has_shadows("-shadows"));
-  EXPECT_TRUE(has_shadows("-emission,+shadows"));
-  lamp.is_unlit = true;
-  EXPECT_EQ(caller(made_of(lamp), Effect::emission), "");
-  for (const int illum : {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}) {
-    Material surface = named("surface");
-    surface.illum = illum;
-    surface.opacity = 0.5f;
-    EXPECT_EQ(caller(made_of(surface), Effect::reflection), "") << illum;  // Ks is black
-    surface.specular = {0, 0, 0.5f};
-    const bool reflects = illum >= 3 && illum <= 7, refracts = illum == 4 || illum == 6 || illum == 7;
-    EXPECT_EQ(!caller(made_of(surface), Effect::reflection).empty(), reflects) << illum;
-    EXPECT_EQ(!caller(made_of(surface), Effect::refraction).empty(), refracts) << illum;
-    surface.opacity = 1;
-    EXPECT_EQ(transmission_of(surface), illum == 6 || illum == 7 ? 1 : 0) << illum;
-  }
-  Material metal = named("metal");
-  metal.metallic = 0.1f;
-  EXPECT_EQ(caller(made_of(metal), Effect::reflection), "material 'metal', which reflects");
-  metal.metallic_map.name = "map";  // paths do not read it
-  EXPECT_EQ(caller(made_of(metal), Effect::reflection), "");
-  Scene scene = with_light();
-  EXPECT_FALSE(effects_of(scene, EffectChanges("+reflection,+refraction,+emission")).follows_paths());
-  EXPECT_TRUE(effects_of(scene, EffectChanges("+global_illumination")).follows_paths());
-  scene.global_illumination = true;
-  EXPECT_EQ(caller(scene, Effect::global_illumination), "/global_illumination");
-}
-
-TEST(Effects, EmittersTakeThePlaceOfTheDefaultLight) {
-  Scene scene = make_built_in("grove");
-  scene.materials[scene.material_index[0]].emission = glm::vec3(1);
-  EXPECT_TRUE(path_lights(scene, effects_of(scene)).empty());
-  EXPECT_EQ(path_lights(scene, effects_of(scene, EffectChanges("-emission"))).size(), 1u);
-  scene.light_origin = "/light";
-  EXPECT_EQ(path_lights(scene, effects_of(scene)).size(), 1u);
-}
-
-TEST(Effects, LightsAreChosenInProportionToTheirPower) {
-  Scene scene;
-  scene.light.radiance = vec3(0);
-  scene.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}};
-  scene.indices = {{0, 1, 2}, {0, 3, 2}, {0, 0, 3}};  // the last one has no area
-  scene.material_index = {0, 1, 1};
-  scene.materials = {named("dim"), named("bright")};
-  scene.materials[0].emission = vec3(1);
-  scene.materials[1].emission = vec3(3);
-  scene.more_lights.push_back({.is_point = true, .origin = "lamp"});
-  const PathArrays paths = scene_arrays(scene, effects_of(scene)).paths;
-  ASSERT_EQ(paths.choices.size(), 3u);
-  uint before = 0;
-  for (const LightChoice& choice : paths.choices) {
-    EXPECT_EQ(choice.probability * LIGHT_CHOICE_RANGE, choice.end - before);
-    before = choice.end;
-  }
-  EXPECT_EQ(before, LIGHT_CHOICE_RANGE);
-  EXPECT_EQ(paths.choices[0].source, LIGHT_CHOICE_LISTED);
-  EXPECT_EQ(paths.choices[0].probability, 0.5f);
-  EXPECT_NEAR(paths.emitter_probability[0], 0.5 / 7, 1e-6);
-  EXPECT_NEAR(paths.emitter_probability[1], 3.0 / 7, 1e-6);
-  EXPECT_EQ(paths.emitter_probability[2], 0);
-}
-
 TEST(Effects, ChangesThatNobodyKnowsAreNamed) {
   const auto error_of = [](const char* text) -> std::string {
     try {
@@ -255,27 +142,6 @@ TEST(Effects, ChangesThatNobodyKnowsAreNamed) {
 }
 
 // --- What is recorded.
-
-RecordedPicture recorded(const Scene& scene, const char* changes = "", std::uint32_t samples = 1,
-                         Walk walk = Walk::binary) {
-  FrameOptions options{.build = BuildOptions{}, .trace = {}};
-  options.trace.width = 40;
-  options.trace.height = 30;
-  options.trace.samples = samples;
-  options.trace.walk = walk;
-  return recorded_picture(scene_arrays(scene, effects_of(scene, EffectChanges(changes))), options);
-}
-
-std::string kernels_of(const RecordedPicture& picture) {
-  std::string text;
-  for (const RecordedPicture::Kernel& kernel : picture.kernels)
-    text += (text.empty() ? "" : " ") + kernel.name + "*" + std::to_string(kernel.dispatches);
-  return text;
-}
-
-bool has_slot(const RecordedPicture& picture, const std::string& name) {
-  return std::ranges::find(picture.slots, name) != picture.slots.end();
-}
 
 TEST(Effects, ThePlainSceneRecordsAsIfThereWereNone) {
   const Scene rich = with_lights({shadowed(sun), lamp});
@@ -442,70 +308,6 @@ TEST(Effects, ShadowsNeedATreeOfOneLevel) {
 }
 
 // --- Scene files.
-
-TEST(SceneFileLights, AreReadAndTurnedWithTheFile) {
-  json file = with_object();
-  file["lights"] = {{{"position", {1, 2, 3}}, {"radiance", {4, 5, 6}}},
-                    {{"direction", {0, 0, 5}}, {"shadows", true}},
-                    {{"direction", {1, 0, 0}}}};
-  file["light"] = {{"ambient", {0.1, 0.2, 0.3}}};
-  const Scene scene = read_scene(file);
-  EXPECT_EQ(scene.ambient_light, glm::vec3(0.1f, 0.2f, 0.3f));
-  EXPECT_EQ(scene.light.direction, glm::vec3(0, 0, 1)) << "the first directional one is the scene's";
-  EXPECT_TRUE(scene.light.shadows);
-  EXPECT_EQ(scene.light_origin, "/lights/1");
-  ASSERT_EQ(scene.more_lights.size(), 2u);
-  EXPECT_TRUE(scene.more_lights[0].is_point);
-  EXPECT_EQ(scene.more_lights[0].place, glm::vec3(1, 2, 3));
-  EXPECT_EQ(scene.more_lights[0].radiance, glm::vec3(4, 5, 6));
-  EXPECT_FALSE(scene.more_lights[0].shadows);
-  file["up"] = "z";
-  const Scene up = read_scene(file);
-  EXPECT_EQ(up.light.direction, glm::vec3(0, 1, 0));
-  EXPECT_EQ(up.more_lights[0].place, glm::vec3(1, 3, -2));
-}
-
-TEST(SceneFileLights, FollowTheSceneIntoRange) {
-  json file = with_object({{"scale", 0x1p-40}});
-  file["lights"] = {{{"position", {0, 0x1p-40, 0}}}};
-  Scene scene = read_scene(file);
-  bring_into_range(scene);
-  const float scale = std::ldexp(1.0f, scene.scale_exponent);
-  EXPECT_GT(scene.scale_exponent, 0);
-  EXPECT_EQ(scene.more_lights[0].place, glm::vec3(0, 0x1p-40f * scale, 0));
-  EXPECT_EQ(scene.more_lights[0].distance, scale);
-}
-
-TEST(SceneFileLights, NoLightAtAllIsSaidAndTheDefaultTaken) {
-  const Scene dark = with_lights({}, {{"ambient", {0, 0, 0}}});
-  EXPECT_EQ(dark.light.radiance, Scene{}.light.radiance);
-  EXPECT_EQ(dark.ambient_light, Scene{}.ambient_light);
-  ASSERT_FALSE(dark.warnings.empty());
-  EXPECT_EQ(dark.warnings.back(), "s.json: no light at all, the default light is taken");
-  EXPECT_TRUE(with_lights({lamp}, {{"ambient", {0, 0, 0}}}).warnings.empty());
-}
-
-TEST(SceneFileLights, ErrorsNameTheirPlace) {
-  const auto error_of = [](const std::vector<json>& lights) {
-    json file = with_object();
-    file["lights"] = lights;
-    return scene_error_of(file);
-  };
-  EXPECT_EQ(error_of({sun, {{"radiance", {1, 1, 1}}}}),
-            "s.json: /lights/1: expected a \"direction\" or a \"position\", one of both");
-  EXPECT_EQ(error_of({{{"direction", {0, 1, 0}}, {"position", {0, 1, 0}}}}),
-            "s.json: /lights/0: expected a \"direction\" or a \"position\", one of both");
-  EXPECT_EQ(error_of({{{"direction", {0, 0, 0}}}}).substr(0, 40), "s.json: /lights/0/direction: [0,0,0], ex");
-  EXPECT_EQ(error_of({{{"position", {0, 0, 1e39}}}}).substr(0, 38), "s.json: /lights/0/position/2: 1e+39, e");
-  EXPECT_EQ(error_of({{{"position", {0, 0, 1}}, {"radiance", {-1, 0, 0}}}}).substr(0, 36),
-            "s.json: /lights/0/radiance/0: -1, ex");
-  EXPECT_EQ(error_of({{{"position", {0, 0, 1}}, {"shadows", "yes"}}}).substr(0, 34),
-            "s.json: /lights/0/shadows: \"yes\", ");
-  EXPECT_EQ(error_of({{{"position", {0, 0, 1}}, {"colour", 1}}}).substr(0, 39),
-            "s.json: /lights/0/colour: unknown key, ");
-  EXPECT_EQ(error_of(std::vector<json>(64, sun)).substr(0, 17), "s.json: /lights: ");
-  EXPECT_EQ(error_of(std::vector<json>(63, sun)), "");
-}
 
 }  // namespace
 }  // namespace coppice

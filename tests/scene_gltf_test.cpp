@@ -187,6 +187,9 @@ TEST(Gltf, MaterialsInTermsOfMtl) {
   EXPECT_EQ(scene.materials[3].illum, 3);  // metals are the default
   EXPECT_EQ(scene.materials[4].emission, glm::vec3(0.5f, 1, 0));
   EXPECT_EQ(scene.materials[4].diffuse, glm::vec3(0));
+  EXPECT_TRUE(scene.materials[4].is_unlit);
+  EXPECT_FALSE(wood.is_unlit);
+  EXPECT_EQ(wood.filter, wood.diffuse);
 }
 
 TEST(Gltf, TheFirstPerspectiveCameraOfTheScene) {

@@ -17,7 +17,7 @@ TEST_F(ObjColours, ReadsMaterials) {
         "newmtl red\r\nKa 0.1 0.2 0.3\r\nKd 1 0 0\r\nKs 0.5 0.5 0.5\r\nKe 2 3 4\r\nNs 20\r\nNi 1.5\r\nd "
         "0.25\r\n"
         "illum 7\r\nmap_Kd -s 1 1 1 tex/red.png\r\n");
-  write("b.mtl", "newmtl dim\nKd 0.5 0.25 0.125\nTr 0.25\n");
+  write("b.mtl", "newmtl dim\nKd 0.5 0.25 0.125\nTf 0.5 1 0.25\nTr 0.25\n");
   const Scene scene =
       load("mtllib a.mtl b.mtl\n" + TRIANGLE + "f 1 2 3\nusemtl dim  \nf 1 2 3\nusemtl red\nf 1 2 3\n");
   ASSERT_EQ(scene.materials.size(), 3u);
@@ -28,6 +28,8 @@ TEST_F(ObjColours, ReadsMaterials) {
   EXPECT_EQ(red.specular, glm::vec3(0.5f));
   EXPECT_EQ(red.emission, glm::vec3(2, 3, 4));
   EXPECT_EQ(red.shininess, 20.0f);
+  EXPECT_EQ(red.filter, glm::vec3(1));
+  EXPECT_EQ(scene.materials[2].filter, glm::vec3(0.5f, 1, 0.25f));
   EXPECT_EQ(red.index_of_refraction, 1.5f);
   EXPECT_EQ(red.opacity, 0.25f);
   EXPECT_EQ(red.illum, 7);

@@ -53,7 +53,7 @@ class FrameLoop {
                               frame.vertices_ms, frame.update_ms, frame.wide_ms, frame.trace_ms,
                               frame.total_ms, frame.rebuilt, frame.sah, frame.state.active_count,
                               frame.counts.rays, frame.counts.hits, frame.counts.steps, frame.shadow.rays,
-                              frame.shadow.hits, frame.occlusion.rays, image_hash(frame.image)});
+                              frame.shadow.hits, frame.occlusion.rays, frame.lobes, image_hash(frame.image)});
     last_done_ = now;
     if (runs_.picture) runs_.picture(number, frame.image);
   }
@@ -85,6 +85,7 @@ void split_kernels(CheckedDevice& device, MovingFrames& frames, const AnimateRun
     counts.steps = trace.steps;
     counts.shadow = trace.shadow;
     counts.occlusion = trace.occlusion;
+    counts.paths = trace.paths;
     sums.add(split.steps, split.times, counts);
     events.add(split);
     total_ms += split.times.total_ms;

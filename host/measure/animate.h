@@ -48,6 +48,7 @@ struct AnimatedFrame {
   std::uint64_t rays, hits, steps;  // of the camera's rays
   std::uint64_t shadow_rays, shadow_hits;
   std::uint64_t occlusion_rays;
+  LobeCounts lobes;    // rays of paths behind those of the camera
   std::uint64_t hash;  // of the picture
 };
 

@@ -69,10 +69,14 @@ const char* word_of_update(Update update) {
 Json to_json(const AnimateReport& report) {
   Json hashes = Json::array(), numbers = Json::array();
   std::uint64_t rays = 0, shadow_rays = 0, occlusion_rays = 0;
+  LobeCounts lobes;
   for (const AnimatedFrame& frame : report.frames) {
     rays += frame.rays;
     shadow_rays += frame.shadow_rays;
     occlusion_rays += frame.occlusion_rays;
+    lobes.reflected += frame.lobes.reflected;
+    lobes.transmitted += frame.lobes.transmitted;
+    lobes.diffuse += frame.lobes.diffuse;
     hashes.push_back(hex16(frame.hash));
     numbers.push_back(frame.number);
   }
@@ -101,7 +105,12 @@ Json to_json(const AnimateReport& report) {
     json["sah"] = Json::array();
     for (const AnimatedFrame& frame : report.frames) json["sah"].push_back(frame.sah);
   }
-  json["rays"] = {{"primary", rays}, {"shadow", shadow_rays}, {"occlusion", occlusion_rays}};
+  json["rays"] = {{"primary", rays},
+                  {"shadow", shadow_rays},
+                  {"reflection", lobes.reflected},
+                  {"refraction", lobes.transmitted},
+                  {"occlusion", occlusion_rays},
+                  {"diffuse", lobes.diffuse}};
   json["rebuilds"] = report.rebuilds;
   json["refits"] = report.refits;
   json["frame_numbers"] = numbers;

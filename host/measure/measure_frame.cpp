@@ -267,7 +267,7 @@ FrameReport measure_frame(CheckedDevice& device, const Scene& scene, const Scene
   report.shadow = {counts.shadow.rays, counts.shadow.hits, counts.shadow.steps};
   report.occlusion = {counts.occlusion.rays, counts.occlusion.hits, counts.occlusion.steps};
   report.bounced = {counts.paths.rays, counts.paths.hits, counts.paths.steps};
-  report.lobes = counts.paths.lobes;
+  report.lobes = counts.lobes;
   read_picture(executor, plan, film, report);
   report.build.device_bytes = device_bytes(layout);
   if (plan.build) describe_device_build(device, executor, *plan.build, report.build);

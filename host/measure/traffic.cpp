@@ -18,16 +18,13 @@ RunCounts counts_of_picture(const GpuExecutor& executor, const TracePlan& plan) 
     const TraceCounts left = counts_of(executor.read(slot)[0]);
     return RunCounts::Secondary{counts.rays * lights, left.rays, left.hits, left.steps};
   };
-  counts.shadow = secondary(plan.lights.counters, plan.options.lights.shadows);
+  const PathCounts& paths = plan.options.paths;
+  const std::uint64_t lights = paths.any() ? paths.bounces + 1 : plan.options.lights.shadows;
+  counts.shadow = secondary(shadow_counters(plan), lights);
   counts.occlusion = secondary(plan.lights.occlusion_counters, 1);
-  if (plan.options.paths.any() && plan.options.show == SHOW_COLOR) {
-    const TraceCounts bounced = counts_of(executor.read(plan.paths.bounce_counters)[0]);
-    const TraceCounts lit = counts_of(executor.read(plan.paths.light_counters)[0]);
-    const std::uint64_t bounces = plan.options.paths.bounces;
-    counts.paths = {counts.rays * bounces, bounced.rays, bounced.hits, bounced.steps,
-                    counts_of(executor.read(plan.paths.lobe_counters)[0])};
-    counts.shadow = {counts.rays * (bounces + 1), lit.rays, lit.hits, lit.steps};
-  }
+  counts.paths = secondary(plan.paths.bounce_counters, paths.bounces);
+  if (plan.paths.lobe_counters.count > 0)
+    counts.lobes = counts_of(executor.read(plan.paths.lobe_counters)[0]);
   return counts;
 }
 

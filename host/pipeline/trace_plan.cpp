@@ -190,6 +190,10 @@ std::array<uint, 256> srgb_thresholds() {
   return thresholds;
 }
 
+const Slot<TraceCounters>& shadow_counters(const TracePlan& plan) {
+  return plan.options.paths.any() ? plan.paths.light_counters : plan.lights.counters;
+}
+
 TracePlan plan_trace(Layout& layout, const TreeSlots& tree, std::uint32_t material_count,
                      const TraceOptions& options) {
   if (options.show == SHOW_STEPS && options.walk == Walk::brute_force)

@@ -117,6 +117,9 @@ struct TracePlan : RaySlots {
   ShowSlots show;
 };
 
+// Of rays to lights, whichever way hits are shaded; none: there are none.
+const Slot<TraceCounters>& shadow_counters(const TracePlan& plan);
+
 // Throws LayoutError if a slot does not fit a block, std::invalid_argument for the steps of brute force.
 TracePlan plan_trace(Layout& layout, const TreeSlots& tree, std::uint32_t material_count,
                      const TraceOptions& options);

@@ -58,9 +58,11 @@ FramePlan MovingFrames::plan_all(MovingFrames& frames, const SceneArrays& arrays
          {layout.add_mapped<uint>("image_left", plan.trace.image.count),
           layout.add_mapped<BuildState>("state_left", 1),
           layout.add_mapped<TraceCounters>("counters_left", 1),
-          layout.add_mapped<TraceCounters>("shadow_counters_left", plan.trace.lights.counters.count),
+          layout.add_mapped<TraceCounters>("shadow_counters_left", shadow_counters(plan.trace).count),
           layout.add_mapped<TraceCounters>("occlusion_counters_left",
                                            plan.trace.lights.occlusion_counters.count),
+          layout.add_mapped<TraceCounters>("bounce_counters_left", plan.trace.paths.bounce_counters.count),
+          layout.add_mapped<PathCounters>("lobe_counters_left", plan.trace.paths.lobe_counters.count),
           layout.add_mapped<RefitState>("refit_left", 1),
           plan.levels ? plan_instances_left(layout, plan.levels->plan, moving) : InstancesLeft{}}});
   }
@@ -163,9 +165,13 @@ void MovingFrames::append_picture(Chain& chain, const FrameSlots& slots) const {
   while (!pieces.done()) pieces.append(chain, ~std::uint64_t{0});
   append_copy_out(chain, plan_.tree.state, slots.left.state);
   append_copy_out(chain, trace.counters, slots.left.counters);
-  if (slots.left.shadow.count > 0) append_copy_out(chain, trace.lights.counters, slots.left.shadow);
+  if (slots.left.shadow.count > 0) append_copy_out(chain, shadow_counters(trace), slots.left.shadow);
   if (slots.left.occlusion.count > 0)
     append_copy_out(chain, trace.lights.occlusion_counters, slots.left.occlusion);
+  if (slots.left.bounced.count > 0) {
+    append_copy_out(chain, trace.paths.bounce_counters, slots.left.bounced);
+    append_copy_out(chain, trace.paths.lobe_counters, slots.left.lobes);
+  }
   if (has_state()) append_copy_out(chain, refit_.state, slots.left.refit);
   if (plan_.levels) append_instances_left(chain, plan_.levels->plan, instances_, slots.left.instances);
 }
@@ -242,6 +248,8 @@ MovingFrame MovingFrames::outcome(const Recorder::Times& times, const Left& left
   frame.counts = counts_of(*mapped(left.counters));
   if (left.shadow.count > 0) frame.shadow = counts_of(*mapped(left.shadow));
   if (left.occlusion.count > 0) frame.occlusion = counts_of(*mapped(left.occlusion));
+  if (left.bounced.count > 0) frame.bounced = counts_of(*mapped(left.bounced));
+  if (left.lobes.count > 0) frame.lobes = counts_of(*mapped(left.lobes));
   frame.image = {mapped(left.image), left.image.count};
   if (options_.tree_cost) frame.sah = sah_cost(*mapped(left.refit), frame.state.active_count);
   return frame;
@@ -275,7 +283,7 @@ MovingFrame MovingFrames::take() {
   const Slot<BuildState>& meshes = left.instances.mesh_states;
   if (meshes.count > 0) check_meshes({mapped(meshes), meshes.count});
   chooser_.note({frame.rebuilt, frame.submits > 1, frame.update_ms + frame.wide_ms, frame.trace_ms,
-                 frame.counts.steps + frame.shadow.steps + frame.occlusion.steps});
+                 frame.counts.steps + frame.shadow.steps + frame.occlusion.steps + frame.bounced.steps});
   return frame;
 }
 

@@ -39,6 +39,8 @@ struct MovingFrame {
   TraceCounts counts;         // of the camera's rays
   TraceCounts shadow;         // of shadow rays
   TraceCounts occlusion;      // of occlusion rays
+  TraceCounts bounced;        // of paths behind the camera's rays
+  LobeCounts lobes;           // the same by the lobe of the surface
   BuildState state;
   double sah = 0;               // of the tree; 0 unless asked for
   std::span<const uint> image;  // RGBA8; until so many more frames as may be under way have been submitted
@@ -100,7 +102,8 @@ class MovingFrames {
     Slot<uint> image;
     Slot<BuildState> state;
     Slot<TraceCounters> counters;
-    Slot<TraceCounters> shadow, occlusion;
+    Slot<TraceCounters> shadow, occlusion, bounced;
+    Slot<PathCounters> lobes;
     Slot<RefitState> refit;
     InstancesLeft instances;
   };

@@ -5,6 +5,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "render/stage_values.h"
 #include "scene/input_error.h"
 #include "scene/surface_effects.h"
 
@@ -13,6 +14,8 @@ namespace coppice {
 namespace {
 
 constexpr float brightest = 0x1p60f;
+constexpr float mirror_shininess = 1000;  // Ns, from which on a reflection is sharp
+constexpr float absent_shininess = 1;     // what a material without Ns has, whose reflection is sharp, too
 
 double luminance(const vec3& colour) { return 0.2126 * colour.x + 0.7152 * colour.y + 0.0722 * colour.z; }
 
@@ -27,7 +30,7 @@ double area_of(const Triangle& triangle) {
 // alpha of GGX of a highlight as wide as Phong's: Walter et al. 2007; roughness is its root.
 float roughness_of(const Material& material) {
   if (material.roughness) return *material.roughness;
-  if (material.shininess <= MIRROR_SHININESS_FROM_ABSENT || material.shininess >= MIRROR_SHININESS) return 0;
+  if (material.shininess <= absent_shininess || material.shininess >= mirror_shininess) return 0;
   return std::sqrt(std::sqrt(2 / (material.shininess + 2)));
 }
 
@@ -146,19 +149,6 @@ void add_choices(const Scene& scene, const EffectSet& effects, std::span<const T
 }
 
 }  // namespace
-
-vec3 flush_to_zero(vec3 v) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (std::fpclassify(v[axis]) == FP_SUBNORMAL || v[axis] == 0) v[axis] = 0;
-  }
-  return v;
-}
-
-LightSource light_source(const Light& light) {
-  constexpr float farthest = 0x1p100f;
-  return {glm::clamp(light.place, -farthest, farthest), light.is_point ? LIGHT_POINT : LIGHT_DIRECTIONAL,
-          flush_to_zero(light.radiance), std::min(light.distance, farthest)};
-}
 
 PathArrays path_arrays(const Scene& scene, const EffectSet& effects, std::span<const Triangle> triangles) {
   PathArrays arrays;

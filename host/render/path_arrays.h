@@ -24,10 +24,4 @@ PathArrays path_arrays(const Scene& scene, const EffectSet& effects, std::span<c
 
 inline constexpr std::size_t MAX_EMITTERS = 1u << 22;
 
-// A light as stages take it, which compare with 0 and place no infinities.
-LightSource light_source(const Light& light);
-
-// Denormals and -0 as +0.
-vec3 flush_to_zero(vec3 v);
-
 }  // namespace coppice

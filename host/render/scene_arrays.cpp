@@ -8,6 +8,7 @@
 #include <iterator>
 #include <limits>
 
+#include "render/stage_values.h"
 #include "scene/instances.h"
 #include "scene/opacity.h"
 

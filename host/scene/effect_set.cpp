@@ -33,6 +33,10 @@ std::string known_effects() {
   return names;
 }
 
+std::string quoted(const Material& material) {
+  return "material '" + printable(std::string_view(material.name)) + "'";
+}
+
 // By the first triangle whose material says so: `why` is empty of one that does not.
 template <class Why>
 void call_by_material(const Scene& scene, Effect effect, EffectSet& effects, const Why& why) {
@@ -41,8 +45,7 @@ void call_by_material(const Scene& scene, Effect effect, EffectSet& effects, con
   const auto caller = std::ranges::find_if(scene.material_index,
                                            [&](std::uint32_t index) { return !reasons[index].empty(); });
   if (caller == scene.material_index.end()) return;
-  const std::string name = printable(std::string_view(scene.materials[*caller].name));
-  effects.call(effect, "material '" + name + "', " + reasons[*caller]);
+  effects.call(effect, quoted(scene.materials[*caller]) + ", " + reasons[*caller]);
 }
 
 std::string which_has(const TextureMap& map) { return "which has " + printable(std::string_view(map.name)); }
@@ -61,10 +64,6 @@ std::string why_alpha(const Material& material) {
   coverage.erase(coverage.find_last_not_of('0') + 1);
   if (coverage.ends_with('.')) coverage.pop_back();
   return "of whose surface " + coverage + " is there";
-}
-
-std::string quoted(const Material& material) {
-  return "material '" + printable(std::string_view(material.name)) + "'";
 }
 
 // By the materials of triangles, in the order of triangles.

@@ -6,9 +6,6 @@ namespace coppice {
 
 // What a material does with light beside reflecting it diffusely, in the terms of docs/effects.md.
 
-inline constexpr float MIRROR_SHININESS = 1000;           // Ns, from which on a reflection is sharp
-inline constexpr float MIRROR_SHININESS_FROM_ABSENT = 1;  // and up to which: an MTL without Ns has 1
-
 // Whether its surface is a light. What is unlit has its colour without being one.
 bool is_emitter(const Material& material);
 

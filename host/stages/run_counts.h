@@ -23,18 +23,13 @@ struct RunCounts {
   std::vector<WideLevel> wide_levels;           // all of them; behind them none or empty ones
   std::vector<RefitLevel> refit_levels;         // the same of refits
   std::uint64_t rays = 0, hits = 0, steps = 0;  // of the whole trace
-  // Of its shadow rays. `could_be`: so many they were if every ray had one for each light that casts shadows.
-  // The same of occlusion rays.
+  // Of its shadow rays. `could_be`: so many they were if every ray had one for each light that casts shadows,
+  // or at each bounce. The same of occlusion rays, and of paths behind the camera's rays.
   struct Secondary {
     std::uint64_t could_be = 0, rays = 0, hits = 0, steps = 0;
   };
-  Secondary shadow, occlusion;
-  // Of its paths, those of cameras not counted; of their light rays `shadow`. `could_be`: as many if each
-  // went on at every bounce.
-  struct {
-    std::uint64_t could_be = 0, rays = 0, hits = 0, steps = 0;
-    LobeCounts lobes{};
-  } paths;
+  Secondary shadow, occlusion, paths;
+  LobeCounts lobes;  // of paths
 };
 
 }  // namespace coppice

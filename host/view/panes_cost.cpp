@@ -46,13 +46,14 @@ void Viewer::cost_pane() {
     ImGui::Text("%.1f steps a ray, %.0f %% hit",
                 static_cast<double>(counts.steps) / static_cast<double>(counts.rays),
                 100.0 * static_cast<double>(counts.hits) / static_cast<double>(counts.rays));
-  const auto secondary = [](const char* kind, const TraceCounts& traced) {
+  const auto secondary = [](const char* kind, const TraceCounts& traced, const char* hit = "blocked") {
     if (traced.rays != 0)
-      ImGui::Text("%.2f M %s rays, %.0f %% blocked", static_cast<double>(traced.rays) * 1e-6, kind,
-                  100.0 * static_cast<double>(traced.hits) / static_cast<double>(traced.rays));
+      ImGui::Text("%.2f M %s rays, %.0f %% %s", static_cast<double>(traced.rays) * 1e-6, kind,
+                  100.0 * static_cast<double>(traced.hits) / static_cast<double>(traced.rays), hit);
   };
   secondary("shadow", statistics_.last.shadow);
   secondary("occlusion", statistics_.last.occlusion);
+  secondary("bounced", statistics_.last.bounced, "hit");
   tree_controls();
   if (ImGui::CollapsingHeader("memory")) {
     ImGui::Text("%s on the device", size_text(frames_->device_bytes()).c_str());

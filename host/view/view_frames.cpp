@@ -16,14 +16,18 @@ namespace {
 // Kernels that a reader takes for one; else a kernel is a group of its own.
 std::string group_of(std::string_view stage) {
   constexpr std::pair<std::string_view, const char*> prefixes[] = {
-      {"vertex_", "vertices"},     {"gather_", "bounds"},    {"primitive_", "bounds"},
-      {"sort_", "sort"},           {"ploc_", "PLOC"},        {"hploc_", "H-PLOC"},
-      {"wide_", "wide"},           {"trace_", "trace"},      {"morton_", "Morton"},
-      {"refit_", "refit"},         {"camera_", "camera"},    {"move_", "instances"},
-      {"instance_", "instances"},  {"copy_", "instances"},   {"place_", "instances"},
-      {"shadow_", "shadows"},      {"scan_", "shadows"},     {"prefix_", "shadows"},
-      {"shade_lights", "lights"},  {"texture_", "textures"}, {"occlusion_", "ambient"},
-      {"shade_ambient", "ambient"}};
+      {"vertex_", "vertices"},    {"gather_", "bounds"},
+      {"primitive_", "bounds"},   {"sort_", "sort"},
+      {"ploc_", "PLOC"},          {"hploc_", "H-PLOC"},
+      {"wide_", "wide"},          {"trace_", "trace"},
+      {"morton_", "Morton"},      {"refit_", "refit"},
+      {"camera_", "camera"},      {"move_", "instances"},
+      {"instance_", "instances"}, {"copy_", "instances"},
+      {"place_", "instances"},    {"shadow_", "shadows"},
+      {"scan_", "shadows"},       {"prefix_", "shadows"},
+      {"shade_lights", "lights"}, {"texture_", "textures"},
+      {"occlusion_", "ambient"},  {"shade_ambient", "ambient"},
+      {"path_", "paths"}};
   for (const auto& [prefix, name] : prefixes) {
     if (stage.starts_with(prefix)) return name;
   }
@@ -238,13 +242,15 @@ ViewedFrame ViewFrames::take() {
   if (const std::string errors = describe_error_word(error_word); !errors.empty())
     throw DeviceError("the frame at second " + std::to_string(under_way_->seconds) + ": " + errors);
   frame.counts = counts_of(executor_.read(plan_.trace.counters)[0]);
-  if (plan_.trace.lights.counters.count > 0)
-    frame.shadow = counts_of(executor_.read(plan_.trace.lights.counters)[0]);
+  if (const auto& counters = shadow_counters(plan_.trace); counters.count > 0)
+    frame.shadow = counts_of(executor_.read(counters)[0]);
   if (plan_.trace.lights.occlusion_counters.count > 0)
     frame.occlusion = counts_of(executor_.read(plan_.trace.lights.occlusion_counters)[0]);
+  if (plan_.trace.paths.bounce_counters.count > 0)
+    frame.bounced = counts_of(executor_.read(plan_.trace.paths.bounce_counters)[0]);
   if (frame.built || frame.refitted)
     chooser_.note({frame.built, under_way_->in_vain, update_ms, frame.device_ms - update_ms,
-                   frame.counts.steps + frame.shadow.steps + frame.occlusion.steps});
+                   frame.counts.steps + frame.shadow.steps + frame.occlusion.steps + frame.bounced.steps});
   if (plan_.trace.show.range.count > 0)
     frame.seen = seen_in(executor_.read(plan_.trace.show.range)[0], options_.show.show);
   const ViewedFrame taken = std::move(frame);

@@ -38,7 +38,8 @@ struct ViewedFrame {
   TraceCounts counts;  // of the camera's rays
   TraceCounts shadow;  // of shadow rays
   TraceCounts occlusion;
-  ShowSpan seen;  // of a view with a range
+  TraceCounts bounced;  // of paths behind the camera's rays
+  ShowSpan seen;        // of a view with a range
 };
 
 struct ViewedTree {
