@@ -250,7 +250,9 @@ TEST_F(DeviceAlpha, TheTracerOfTheHostSeesTheSameHoles) {
   scene.light.shadows = true;
   for (const char* const builder : {"sah", "none"}) {
     FrameRuns frame{.builder = {.name = builder}, .trace = test_trace_options(width, height)};
-    const std::vector<uint> host = measure_host_frame(nullptr, scene, frame, [](const std::string&) {}).image;
+    const std::vector<uint> host = measure_host_frame(nullptr, scene, scene_arrays(scene, effects_of(scene)),
+                                                      frame, [](const std::string&) {})
+                                       .image;
     const std::vector<uint> device = picture_of(scene);
     std::size_t others = 0;
     for (std::size_t i = 0; i < host.size(); ++i) others += host[i] != device[i];

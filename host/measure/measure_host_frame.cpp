@@ -85,7 +85,8 @@ struct HostTrace {
     }
   }
 
-  bool is_occlusion(const TraceAnyArgs& args) const {
+  template <class Args>
+  bool is_occlusion(const Args& args) const {
     const Slot<TraceCounters>& counters = plan.trace.lights.occlusion_counters;
     return counters.count > 0 && executor.chain().at(counters).value == args.counters.value;
   }
