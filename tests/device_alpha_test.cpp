@@ -60,6 +60,18 @@ glm::dvec3 place_seen(const Film& film, uint x, uint y, glm::dvec3 point = {0, 0
 
 constexpr uint white = 0xffffffffu;
 
+// Empty where there is none.
+std::string difference_of(const Scene& scene, Walk walk) {
+  const SceneArrays arrays = scene_arrays(scene, effects_of(scene));
+  Layout layout(test_device().properties().max_block_bytes);
+  const FramePlan plan = plan_frame(layout, arrays, frame_options(walk));
+  LockstepExecutor executor(test_device(), layout);
+  upload_frame(executor, plan, arrays, make_film(scene, {}, width, height, 1));
+  const auto difference = executor.run([&](Chain& chain) { append_frame(chain, plan); });
+  if (!difference) return "";
+  return difference->stage + " " + difference->slot + " " + std::to_string(difference->index);
+}
+
 TEST_F(DeviceAlpha, AMaskIsThereFromItsCutoffOn) {
   // The middles of the texels are at -1/2 and 1/2, so 0.3 is at -1/5.
   const Scene scene = masked_square(opacity_of(2, 1, {0, 255}), 0.3f);
@@ -204,16 +216,18 @@ TEST_F(DeviceAlpha, StagesAreInLockstepWithTheirTwins) {
   Scene scene = masked_scene(300);
   scene.light.shadows = true;
   scene.more_lights.push_back({.is_point = true, .place = {1, 3, 2}, .shadows = true, .origin = ""});
-  const SceneArrays arrays = scene_arrays(scene, effects_of(scene));
-  ASSERT_EQ(arrays.alpha_counts().maps, 4u);
-  for (const Walk walk : tree_walks) {
-    Layout layout(test_device().properties().max_block_bytes);
-    const FramePlan plan = plan_frame(layout, arrays, frame_options(walk));
-    LockstepExecutor executor(test_device(), layout);
-    upload_frame(executor, plan, arrays, make_film(scene, {}, width, height, 1));
-    const auto difference = executor.run([&](Chain& chain) { append_frame(chain, plan); });
-    EXPECT_FALSE(difference) << difference->stage << " " << difference->slot << " " << difference->index;
-  }
+  ASSERT_EQ(scene_arrays(scene, effects_of(scene)).alpha_counts().maps, 4u);
+  for (const Walk walk : tree_walks) EXPECT_EQ(difference_of(scene, walk), "");
+}
+
+// Rays by which paths go on, and those to lights that are sampled there, go past holes, too.
+TEST_F(DeviceAlpha, PathsAreInLockstepWithTheirTwins) {
+  Scene scene = masked_scene(100);
+  scene.global_illumination = true;
+  scene.bounces = 2;
+  scene.light.shadows = true;
+  scene.materials[2].emission = {2, 1, 3};
+  for (const Walk walk : {Walk::binary, Walk::wide_single}) EXPECT_EQ(difference_of(scene, walk), "");
 }
 
 // Coordinates that are no numbers, endless or huge, in every way of wrapping.
@@ -235,13 +249,7 @@ TEST_F(DeviceAlpha, AnyTextureCoordinatesAreInLockstep) {
     if (i % 2 == 0) scene.materials.back().alpha_cutoff = 0.4f;
     scene.material_index.back() = scene.material_index[scene.material_index.size() - 2] = i;
   }
-  const SceneArrays arrays = scene_arrays(scene, effects_of(scene));
-  Layout layout(test_device().properties().max_block_bytes);
-  const FramePlan plan = plan_frame(layout, arrays, frame_options(Walk::wide_single));
-  LockstepExecutor executor(test_device(), layout);
-  upload_frame(executor, plan, arrays, make_film(scene, {}, width, height, 1));
-  const auto difference = executor.run([&](Chain& chain) { append_frame(chain, plan); });
-  EXPECT_FALSE(difference) << difference->stage << " " << difference->slot << " " << difference->index;
+  EXPECT_EQ(difference_of(scene, Walk::wide_single), "");
 }
 
 // In double, and so without the same bits of u and v.
