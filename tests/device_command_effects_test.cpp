@@ -92,7 +92,7 @@ TEST_F(CommandEffects, ExplainNamesWhatCalledForEach) {
 
 TEST_F(CommandEffects, TheTableHasTheCostOfWhatIsOnAndZeroesForTheRest) {
   const json rich = report_of("effects scene.json")["effects"];
-  ASSERT_EQ(rich.size(), 9u);
+  ASSERT_EQ(rich.size(), 10u);
   EXPECT_EQ(rich[0]["name"], "lights");
   EXPECT_GT(rich[0]["rays"], 0) << "one of the points casts shadows";
   const json& shadows = rich[1];
@@ -201,6 +201,58 @@ TEST_F(CommandEffects, AmbientOcclusionIsCountedAndCosted) {
                  "--builder none: ambient occlusion is traced through a tree");
   expect_refused("animate instances:20 --frames 1 --size 16x16 --effects +ambient_occlusion", 1,
                  "through which no occlusion rays are traced (--effects=-ambient_occlusion goes without)");
+}
+
+TEST_F(CommandEffects, AMapOfOpacityThatIsMissingIsNamedAndHolesAreSeen) {
+  write("leaf.mtl", "newmtl leaf\nKd 1 1 1\nmap_d gone.png\n");
+  write("leaf.obj",
+        "mtllib leaf.mtl\nusemtl leaf\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0.5 1\nf 1/1 2/2 "
+        "3/3\n");
+  const Outcome outcome = run("render leaf.obj -o out.png --size 32x32 --explain");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("alpha               on   called for by material 'leaf', which has gone.png\n"),
+            std::string::npos)
+      << outcome.out;
+  EXPECT_NE(
+      outcome.err.find("gone.png: no such file, a checker takes its place as map_d of material 'leaf'\n"),
+      std::string::npos)
+      << outcome.err;
+  const json with = report_of("render leaf.obj -o out.png --validate");
+  const json without = report_of("render leaf.obj -o out.png --effects=-alpha");
+  EXPECT_EQ(with["effects"], json({"ambient", "directional_light", "alpha"}));
+  EXPECT_NEAR(with["hits"].get<double>(), without["hits"].get<double>() / 2, 100);
+  const json cost = report_of("effects leaf.obj")["effects"][9];
+  EXPECT_EQ(cost["name"], "alpha");
+  const std::vector<std::string> kernels = cost["kernels"];
+  EXPECT_EQ(std::ranges::count_if(kernels, [](const std::string& name) { return name.ends_with("_alpha"); }),
+            1);
+  EXPECT_GT(cost["bytes"], 0);
+  EXPECT_TRUE(report_of("lockstep leaf.obj --effects +shadows")["equal"]);
+  EXPECT_EQ(report_of("animate leaf.obj --frames 1")["frame_hashes"][0], with["image_hash"]);
+  fs::remove("out.png");
+  expect_refused("render leaf.obj -o out.png --builder none", 1,
+                 "--builder none: alpha is looked at on the way through a tree");
+  EXPECT_EQ(report_of("render leaf.obj -o out.png --builder none --effects=-alpha")["hits"], without["hits"]);
+}
+
+TEST_F(CommandEffects, AColourMapThatIsACutOutIsSeenAsOne) {
+  std::string image(18, '\0');  // a TGA of a hole and a solid texel
+  image[2] = 2, image[12] = 2, image[14] = 1, image[16] = 32, image[17] = 0x28;
+  write("leaf.tga", image + std::string(4, '\0') + std::string(4, '\xff'));
+  write("leaf.mtl", "newmtl leaf\nmap_Kd leaf.tga\n");
+  write("leaf.obj",
+        "mtllib leaf.mtl\nusemtl leaf\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0.25 0\nvt 0.75 0\n"
+        "f 1/1 2/2 3/2 4/1\n");
+  const Outcome outcome = run("render leaf.obj -o out.png --size 32x32 --explain");
+  EXPECT_NE(outcome.out.find("alpha               on   called for by material 'leaf', which has leaf.tga\n"),
+            std::string::npos)
+      << outcome.out << outcome.err;
+  const std::string straight = " --camera 0,0,4,0,0,0";  // both halves are as large
+  const json with = report_of("render leaf.obj -o out.png" + straight);
+  const json without = report_of("render leaf.obj -o out.png --effects=-alpha" + straight);
+  EXPECT_NEAR(with["hits"].get<double>(), without["hits"].get<double>() / 2, 50);
+  EXPECT_EQ(report_of("animate leaf.obj --frames 1" + straight)["frame_hashes"][0], with["image_hash"]);
+  EXPECT_TRUE(report_of("lockstep leaf.obj")["equal"]);
 }
 
 TEST_F(CommandEffects, PathsAreCountedByWhatTheyMeetAndTakeATree) {

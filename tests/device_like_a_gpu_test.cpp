@@ -13,6 +13,7 @@
 #include "stages/gpu_executor.h"
 #include "stages/lockstep_executor.h"
 #include "support/device_run.h"
+#include "support/masked_scene.h"
 #include "support/rays.h"
 #include "support/traced_instances.h"
 #include "support/wide.h"
@@ -201,6 +202,28 @@ TEST_F(LikeAGpu, SameHitsThroughEveryTree) {
     EXPECT_EQ(there.any_on_device(rays, options).any_hits, here.any_by_twins(rays, options).any_hits)
         << "walk " << static_cast<int>(walk);
   }
+}
+
+// Of triangles that let rays through, with shadows.
+TEST_F(LikeAGpu, SamePicturesOfMasks) {
+  Scene scene = masked_scene(300);
+  scene.light.shadows = true;
+  const SceneArrays arrays = scene_arrays(scene, effects_of(scene));
+  const auto picture_on = [&](Device& on, Walk walk) {
+    FrameOptions options{.build = BuildOptions{}, .trace = test_trace_options(60, 40)};
+    options.trace.walk = walk;
+    Layout layout(on.properties().max_block_bytes);
+    const FramePlan plan = plan_frame(layout, arrays, options);
+    GpuExecutor executor(on, layout);
+    upload_frame(executor, plan, arrays, make_film(scene, {}, 60, 40, 1));
+    Chain chain = executor.chain();
+    append_frame(chain, plan);
+    executor.record(chain.steps()).submit_and_wait(submit_limit_seconds);
+    return executor.read(plan.trace.image);
+  };
+  const std::vector<uint> expected = picture_on(test_device(), Walk::binary);
+  for (const Walk walk : {Walk::binary, Walk::wide_packets, Walk::wide_single})
+    EXPECT_EQ(picture_on(device(), walk), expected) << name_of(walk);
 }
 
 }  // namespace

@@ -86,7 +86,9 @@ TEST(SharedLayout, ElementsOfEverySlot) {
   EXPECT_SAME_LAYOUT(MeshRange);
   EXPECT_SAME_LAYOUT(PlacedInstance);
   EXPECT_SAME_LAYOUT(LuminanceSums);
-  EXPECT_EQ(seen.size(), 31u);
+  EXPECT_SAME_LAYOUT(AlphaMap);
+  EXPECT_SAME_LAYOUT(AlphaTriangle);
+  EXPECT_EQ(seen.size(), 33u);
 }
 
 }  // namespace

@@ -123,6 +123,39 @@ TEST(Traffic, OfTextures) {
   EXPECT_EQ(bytes, 1000u * 4 + 250 * 276);
 }
 
+// The same as without, and of each hit the word of its triangle.
+TEST(Traffic, OfAlpha) {
+  const auto bytes_of = [](AlphaCounts alpha, std::uint32_t shadows, Walk walk) {
+    Layout layout;
+    const TreeSlots tree = plan_tree(layout, 100, 199);
+    const TracePlan plan = plan_trace(layout, tree, 1,
+                                      {.width = 40,
+                                       .height = 25,
+                                       .walk = walk,
+                                       .lights = {.lights = 1, .shadows = shadows},
+                                       .alpha = alpha});
+    Chain chain(nowhere);
+    append_trace(chain, tree, plan);
+    RunCounts counts;
+    counts.rays = 1000, counts.hits = 250, counts.steps = 6400;
+    if (shadows > 0) counts.shadow = {1000, 200, 40, 3000};
+    std::map<std::string, std::uint64_t> bytes;
+    for (const Step& step : chain.steps()) {
+      if (stage_of(step)) bytes[stage_of(step)->name] += modelled_bytes(step, counts);
+    }
+    return bytes;
+  };
+  for (const auto& [walk, closest, any] :
+       {std::tuple{Walk::binary, "trace_closest", "trace_any"},
+        std::tuple{Walk::wide_packets, "trace_wide", "trace_wide_any"},
+        std::tuple{Walk::wide_single, "trace_wide_single", "trace_wide_any"}}) {
+    auto with = bytes_of({1, 16}, 1, walk), without = bytes_of({}, 1, walk);
+    EXPECT_EQ(with[closest + std::string("_alpha")], without[closest] + 250 * 4);
+    EXPECT_EQ(with[any + std::string("_alpha")], without[any] + 40 * 4);
+    EXPECT_FALSE(with.contains(closest) || with.contains(any));
+  }
+}
+
 TEST(Traffic, OfATraceOfTwoSamples) {
   Layout layout;
   const TreeSlots tree = plan_tree(layout, 100, 199);

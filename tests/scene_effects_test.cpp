@@ -17,6 +17,7 @@ TEST(Effects, ThePlainSceneCallsForNothing) {
     EXPECT_EQ(caller(scene, Effect::lights), "");
     EXPECT_EQ(caller(scene, Effect::shadows), "");
     EXPECT_EQ(caller(scene, Effect::textures), "");
+    EXPECT_EQ(caller(scene, Effect::alpha), "");
     EXPECT_TRUE(shaded_lights(scene, effects_of(scene)).empty());
   }
 }
@@ -49,6 +50,35 @@ TEST(Effects, AMapOfColoursThatATriangleHasCallsForTextures) {
   EXPECT_TRUE(effects_of(scene).needs_one_level());
   EXPECT_FALSE(effects_of(scene, EffectChanges("-textures")).needs_one_level());
   EXPECT_FALSE(effects_of(with_light(), EffectChanges("+textures")).needs_one_level());
+}
+
+TEST(Effects, AMaterialThatIsNotAllThereCallsForAlpha) {
+  const auto caller_of = [](const auto& change) {
+    Scene scene = with_light();
+    scene.materials.push_back({.name = "unused", .opacity = 0});
+    Material& material = scene.materials[scene.material_index[0]];
+    material.name = "leaf";
+    change(material);
+    return caller(scene, Effect::alpha);
+  };
+  const auto name_of_map = [](Material& m) { m.opacity_map.name = "leaf.png"; };
+  EXPECT_EQ(caller_of([](Material&) {}), "");
+  EXPECT_EQ(caller_of(name_of_map), "material 'leaf', which has leaf.png");
+  EXPECT_EQ(caller_of([](Material& m) { m.opacity = 0.25f; }),
+            "material 'leaf', of whose surface 0.25 is there");
+  EXPECT_EQ(caller_of([](Material& m) { m.opacity = 0; }), "material 'leaf', of whose surface 0 is there");
+  EXPECT_EQ(caller_of([](Material& m) { m.diffuse_map.name = "leaf.png"; }), "") << "whatever its alpha";
+  for (const int illum : {4, 6, 7, 9}) {  // glass, of which d is no share
+    EXPECT_EQ(caller_of([&](Material& m) { m.opacity = 0.1f, m.illum = illum; }), "") << illum;
+    EXPECT_NE(caller_of([&](Material& m) { name_of_map(m), m.illum = illum; }), "") << illum;
+  }
+  for (const int illum : {0, 1, 2, 3, 5, 8, 10})
+    EXPECT_NE(caller_of([&](Material& m) { m.opacity = 0.1f, m.illum = illum; }), "") << illum;
+  Scene scene = with_light();
+  scene.materials[scene.material_index[0]].opacity = 0.5f;
+  EXPECT_TRUE(effects_of(scene).needs_one_level());
+  EXPECT_FALSE(effects_of(scene, EffectChanges("-alpha")).needs_one_level());
+  EXPECT_FALSE(effects_of(with_light(), EffectChanges("+alpha")).needs_one_level());
 }
 
 TEST(Effects, WhatIsShadedHasThoseThatCastShadowsLast) {
@@ -102,7 +132,7 @@ TEST(Effects, ChangesThatNobodyKnowsAreNamed) {
   };
   const std::string all =
       " is no + or - and an effect behind it: there are lights, shadows, textures, "
-      "depth_of_field, ambient_occlusion, emission, reflection, refraction, global_illumination";
+      "depth_of_field, ambient_occlusion, emission, reflection, refraction, global_illumination, alpha";
   EXPECT_EQ(error_of("+fog"), "'+fog'" + all);
   EXPECT_EQ(error_of("shadows"), "'shadows'" + all);
   EXPECT_EQ(error_of("+"), "'+'" + all);
@@ -168,6 +198,37 @@ TEST(Effects, TexturesRecordOneStageMoreAndOpenNoImageWhereTheyAreOff) {
   EXPECT_TRUE(scene_arrays(scene).textures.empty()) << "for trees alone";
 }
 
+TEST(Effects, AlphaTakesOtherTracersAndNothingElse) {
+  Scene scene = with_lights({shadowed(sun)});
+  scene.materials[scene.material_index[0]].opacity = 0.5f;
+  const RecordedPicture alpha = recorded(scene, "-shadows");
+  EXPECT_EQ(kernels_of(alpha), "camera_rays*1 trace_closest_alpha*1 shade_pixels*1");
+  EXPECT_EQ(alpha.effect_steps[9], 1u);
+  const RecordedPicture shadows = recorded(scene);
+  EXPECT_EQ(kernels_of(shadows),
+            "camera_rays*1 trace_closest_alpha*1 shade*1 shadow_marks*1 scan_tile_sums*1 prefix_scan*2 "
+            "shadow_rays*1 trace_any_alpha*1 shade_lights*1 resolve*1");
+  EXPECT_EQ(shadows.effect_steps[1], 7u);
+  EXPECT_EQ(shadows.effect_steps[9], 2u);
+  for (const auto& [walk, tracer] : {std::pair{Walk::wide_packets, "trace_wide_alpha*1"},
+                                     std::pair{Walk::wide_single, "trace_wide_single_alpha*1"}}) {
+    const std::string kernels = kernels_of(recorded(scene, "", 1, walk));
+    EXPECT_NE(kernels.find(tracer), std::string::npos) << kernels;
+    EXPECT_NE(kernels.find("trace_wide_any_alpha*1"), std::string::npos) << kernels;
+  }
+  const RecordedPicture without = recorded(scene, "-alpha,-shadows"),
+                        forced = recorded(with_light(), "+alpha");
+  for (const RecordedPicture& picture : {without, forced}) {
+    EXPECT_EQ(kernels_of(picture), "camera_rays*1 trace_closest*1 shade_pixels*1");
+    EXPECT_EQ(picture.effect_steps[9], 0u);
+    for (const char* slot : {"alpha_triangles", "alpha_maps", "alpha_texels"}) {
+      EXPECT_TRUE(has_slot(alpha, slot)) << slot;
+      EXPECT_FALSE(has_slot(picture, slot)) << slot;
+    }
+  }
+  EXPECT_GT(alpha.device_bytes, without.device_bytes);
+}
+
 TEST(Effects, AnApertureCallsForDepthOfFieldWhichChangesAKernelAndAddsNone) {
   json file = with_object();
   file["camera"] = {{"position", {0, 0, 4}}, {"target", {0, 0, 0}}, {"aperture", 0.25}, {"focus", 3}};
@@ -227,7 +288,9 @@ TEST(Effects, ViewsThatShowNoColoursHaveNone) {
   options.trace.width = 40;
   options.trace.height = 30;
   options.trace.show = SHOW_NORMALS;
-  const RecordedPicture picture = recorded_picture(scene_arrays(with_lights({shadowed(sun), lamp})), options);
+  Scene scene = with_lights({shadowed(sun), lamp});
+  scene.materials[scene.material_index[0]].opacity = 0.5f;
+  const RecordedPicture picture = recorded_picture(scene_arrays(scene, effects_of(scene)), options);
   EXPECT_EQ(kernels_of(picture), "camera_rays*1 trace_closest*1 show*1 resolve*1");
   EXPECT_FALSE(has_slot(picture, "lights"));
 }

@@ -72,8 +72,10 @@ class PreparedRay {
   bool is_valid;
 };
 
+// `passes` takes the hit of a ray that it knows.
+template <class Passes>
 void test_triangle(std::span<const Triangle> triangles, std::uint32_t index, const PreparedRay& ray,
-                   Hit& best) {
+                   const Passes& passes, Hit& best) {
   const Triangle& triangle = triangles[index];
   for (const vec3& corner : {triangle.a, triangle.b, triangle.c}) {
     if (!std::isfinite(corner.x) || !std::isfinite(corner.y) || !std::isfinite(corner.z)) return;
@@ -104,7 +106,8 @@ void test_triangle(std::span<const Triangle> triangles, std::uint32_t index, con
   const float t = static_cast<float>(std::clamp(distance, inside.near, inside.far));
   if (!(t >= ray.t_min && t <= ray.t_max && std::isfinite(t))) return;
   if (t < best.t || (t == best.t && index < best.triangle)) {
-    best = {t, index, static_cast<float>(beside_ca / sum), static_cast<float>(beside_ab / sum)};
+    const Hit hit{t, index, static_cast<float>(beside_ca / sum), static_cast<float>(beside_ab / sum)};
+    if (!passes(hit)) best = hit;
   }
 }
 
@@ -131,8 +134,9 @@ void push_children(const Node& parent, std::span<const Node> nodes, const Prepar
   }
 }
 
+template <class Passes>
 Hit closest_hit(std::span<const Node> nodes, std::span<const Triangle> triangles, const Ray& ray,
-                std::vector<Entry>& stack) {
+                const Passes& passes, std::vector<Entry>& stack) {
   Hit best = miss_of(ray);
   const PreparedRay prepared(ray);
   if (nodes.empty() || !prepared.is_valid) return best;
@@ -144,7 +148,7 @@ Hit closest_hit(std::span<const Node> nodes, std::span<const Triangle> triangles
     if (entry.near > best.t) continue;
     const Node& node = nodes[entry.node];
     if (node.height == 0) {
-      test_triangle(triangles, node.child, prepared, best);
+      test_triangle(triangles, node.child, prepared, passes, best);
     } else {
       push_children(node, nodes, prepared, stack);
     }
@@ -152,31 +156,42 @@ Hit closest_hit(std::span<const Node> nodes, std::span<const Triangle> triangles
   return best;
 }
 
+template <class Passes>
+Hit brute_force_hit(std::span<const Triangle> triangles, const Ray& ray, const Passes& passes) {
+  Hit best = miss_of(ray);
+  const PreparedRay prepared(ray);
+  if (!prepared.is_valid) return best;
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    test_triangle(triangles, static_cast<std::uint32_t>(i), prepared, passes, best);
+  return best;
+}
+
+bool passes_none(const Hit&) { return false; }
+
 }  // namespace
 
 Hit closest_hit(std::span<const Node> nodes, std::span<const Triangle> triangles, const Ray& ray) {
   std::vector<Entry> stack;
-  return closest_hit(nodes, triangles, ray, stack);
+  return closest_hit(nodes, triangles, ray, passes_none, stack);
 }
 
 Hit brute_force_hit(std::span<const Triangle> triangles, const Ray& ray) {
-  Hit best = miss_of(ray);
-  const PreparedRay prepared(ray);
-  if (!prepared.is_valid) return best;
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    test_triangle(triangles, static_cast<std::uint32_t>(i), prepared, best);
-  }
-  return best;
+  return brute_force_hit(triangles, ray, passes_none);
 }
 
 void trace_all(std::span<const Node> nodes, std::span<const Triangle> triangles, std::span<const Ray> rays,
-               std::span<Hit> hits) {
+               std::span<Hit> hits, const PassedHits& passes) {
   if (rays.size() != hits.size()) throw std::invalid_argument("trace_all: as many hits as rays are needed");
+  const auto trace = [&](const Ray& ray, const auto& passes_hit, std::vector<Entry>& stack) {
+    return nodes.empty() ? brute_force_hit(triangles, ray, passes_hit)
+                         : closest_hit(nodes, triangles, ray, passes_hit, stack);
+  };
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rays.size()), [&](const auto& range) {
     std::vector<Entry> stack;
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      hits[i] =
-          nodes.empty() ? brute_force_hit(triangles, rays[i]) : closest_hit(nodes, triangles, rays[i], stack);
+      hits[i] = passes ? trace(
+                             rays[i], [&](const Hit& hit) { return passes(i, hit); }, stack)
+                       : trace(rays[i], passes_none, stack);
     }
   });
 }

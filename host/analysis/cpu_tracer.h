@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <span>
 
 #include "interface/trace.h"
@@ -26,9 +28,12 @@ Hit closest_hit(std::span<const Node> nodes, std::span<const Triangle> triangles
 // Tests every triangle.
 Hit brute_force_hit(std::span<const Triangle> triangles, const Ray& ray);
 
-// hits[i] = the closest hit of rays[i], in parallel; by brute force where `nodes` is empty. Throws
-// std::invalid_argument where the spans differ in length.
+// Whether ray number `ray` goes on as if it had not met this triangle there. Called by several threads.
+using PassedHits = std::function<bool(std::size_t ray, const Hit& hit)>;
+
+// hits[i] = the closest hit of rays[i] that it does not pass, in parallel; by brute force where `nodes` is
+// empty. Throws std::invalid_argument where the spans differ in length.
 void trace_all(std::span<const Node> nodes, std::span<const Triangle> triangles, std::span<const Ray> rays,
-               std::span<Hit> hits);
+               std::span<Hit> hits, const PassedHits& passes = {});
 
 }  // namespace coppice

@@ -6,6 +6,7 @@
 #include "measure/lockstep_report.h"
 #include "measure/table.h"
 #include "render/frame.h"
+#include "scene/texture.h"
 #include "stages/errors.h"
 
 namespace coppice {
@@ -29,7 +30,8 @@ class LockstepCommand : public Command {
   std::vector<std::string> scenes() const override { return {scene_.spec}; }
 
   int run() override {
-    const Scene scene = open_scene_of(scene_, builder_, device_, true);
+    Scene scene = open_scene_of(scene_, builder_, device_, true);
+    if (!scene_.effects.turns_off(Effect::alpha)) find_cut_outs(scene);
     const SceneArrays arrays = picture_arrays(scene, scene_.effects);
     const TraceOptions& trace = picture_.trace;
     const BuildOptions least = builder_.least_build_options();

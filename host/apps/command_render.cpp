@@ -99,7 +99,7 @@ class RenderCommand : public Command {
     const Scene scene = open_for_effects(scene_, builder_, device_, on_device, true);
     const EffectSet effects = effects_of(scene, scene_.effects);
     if (explain_ && files.talks()) print(explain(effects));
-    check_shadows(effects);
+    check_tree(effects);
     around.load_ms = ms_since(load_start);
     if (show_.show == Show::instances && scene.instances.empty())
       throw InputError("--show instances: scene '" + scene.name + "' has no instances");
@@ -133,8 +133,8 @@ class RenderCommand : public Command {
  private:
   bool traces_on_device() const { return tracer_ == "gpu"; }
 
-  // There is none to trace them through.
-  void check_shadows(const EffectSet& effects) const {
+  // Without one the device traces no shadows, and looks at no alpha.
+  void check_tree(const EffectSet& effects) const {
     if (builder_.name != "none" || show_.show != Show::color || !traces_on_device()) return;
     if (effects.follows_paths())
       throw InputError(
@@ -145,6 +145,10 @@ class RenderCommand : public Command {
       throw InputError(
           "--builder none: shadows are traced through a tree, which takes another builder "
           "(--effects=-shadows goes without)");
+    if (effects.has(Effect::alpha) && !effects.of(Effect::alpha).called_by.empty())
+      throw InputError(
+          "--builder none: alpha is looked at on the way through a tree, which takes another builder "
+          "(--effects=-alpha goes without)");
     if (effects.has(Effect::ambient_occlusion))
       throw InputError(
           "--builder none: ambient occlusion is traced through a tree, which takes another builder "

@@ -8,6 +8,7 @@
 
 #include "render/scene_room.h"
 #include "scene/input_error.h"
+#include "scene/texture.h"
 
 namespace coppice {
 
@@ -47,8 +48,11 @@ Scene open_scene_of(const SceneOptions& options, const BuilderChoice& builder, c
 
 Scene open_for_effects(const SceneOptions& options, const BuilderChoice& builder, const DeviceSetup& device,
                        bool on_device, bool may_stand_still) {
-  const auto open = [&](const SceneOptions& scene) {
-    return open_scene_with_room(scene, on_device ? &device.options : nullptr, build_of(builder), print_note);
+  const auto open = [&](const SceneOptions& of) {
+    Scene scene =
+        open_scene_with_room(of, on_device ? &device.options : nullptr, build_of(builder), print_note);
+    if (!options.effects.turns_off(Effect::alpha)) find_cut_outs(scene);
+    return scene;
   };
   Scene scene = open(options);
   const EffectSet effects = effects_of(scene, options.effects);
@@ -76,7 +80,7 @@ Scene open_for_effects(const SceneOptions& options, const BuilderChoice& builder
 
 SceneArrays picture_arrays(const Scene& scene, const EffectChanges& effects) {
   SceneArrays arrays = scene_arrays(scene, effects_of(scene, effects));
-  print_warnings(arrays.textures.warnings);
+  print_warnings(arrays.image_warnings());
   return arrays;
 }
 

@@ -53,6 +53,10 @@ bool belongs_to(const Step& step, Effect effect, const Sharing& sharing) {
   const auto is_one_of = [&](std::initializer_list<const StageDeclaration*> own) {
     return std::ranges::find(own, stage) != own.end();
   };
+  if (effect == Effect::alpha)
+    return is_one_of({&stages::trace_closest_alpha, &stages::trace_wide_alpha,
+                      &stages::trace_wide_single_alpha, &stages::trace_any_alpha,
+                      &stages::trace_wide_any_alpha});
   if (effect == Effect::shadows &&
       is_one_of({&stages::shadow_marks, &stages::shadow_rays, &stages::path_light_add}))
     return true;
@@ -60,7 +64,8 @@ bool belongs_to(const Step& step, Effect effect, const Sharing& sharing) {
       is_one_of({&stages::occlusion_marks, &stages::occlusion_rays, &stages::shade_ambient}))
     return true;
   if (effect != sharing.queue) return false;
-  return is_one_of({&stages::trace_any, &stages::trace_wide_any}) ||
+  return is_one_of({&stages::trace_any, &stages::trace_wide_any, &stages::trace_any_alpha,
+                     &stages::trace_wide_any_alpha}) ||
          (!sharing.paths && is_one_of({&stages::scan_tile_sums, &stages::prefix_scan}));
 }
 

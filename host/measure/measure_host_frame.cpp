@@ -15,6 +15,7 @@
 #include "render/frame.h"
 #include "stages/cpu_executor.h"
 #include "stages/stages.h"
+#include "twins/alpha.h"
 
 namespace coppice {
 
@@ -25,23 +26,35 @@ std::uint64_t count_hits(std::span<const Hit> hits) {
       std::ranges::count_if(hits, [](const Hit& hit) { return hit.triangle != NO_TRIANGLE; }));
 }
 
-void trace_closest_on_host(const TraceClosestArgs& args, const Bvh& bvh, std::span<const Triangle> triangles,
+// What rays pass, by the arguments of a stage with alpha; nothing by those of others.
+template <class Args>
+PassedHits passed_hits(const Args& args) {
+  if constexpr (requires { args.alpha_maps; })
+    return [&args](std::size_t ray, const Hit& hit) {
+      return twins::Alpha(args, args.rays[ray]).lets_through(hit);
+    };
+  return {};
+}
+
+template <class Args>
+void trace_closest_on_host(const Args& args, const Bvh& bvh, std::span<const Triangle> triangles,
                            FrameReport& report) {
   const bool bounced = args.count_at.value != 0;
   const std::uint32_t count = bounced ? args.count_at[0] : args.ray_count;
   const std::span<const Ray> rays(&args.rays[0], count);
   const std::span<Hit> hits(&args.hits[0], count);
-  trace_all(bvh.nodes, triangles, rays, hits);
+  trace_all(bvh.nodes, triangles, rays, hits, passed_hits(args));
   (bounced ? report.bounced.rays : report.rays) += rays.size();
   (bounced ? report.bounced.hits : report.hits) += count_hits(hits);
 }
 
 // Of shadow or occlusion rays: whether there is a closest hit.
-void trace_any_on_host(const TraceAnyArgs& args, const Bvh& bvh, std::span<const Triangle> triangles,
+template <class Args>
+void trace_any_on_host(const Args& args, const Bvh& bvh, std::span<const Triangle> triangles,
                        TraceCounts& counts) {
   const std::span<const Ray> rays(&args.rays[0], args.count_at[0]);
   std::vector<Hit> hits(rays.size());
-  trace_all(bvh.nodes, triangles, rays, hits);
+  trace_all(bvh.nodes, triangles, rays, hits, passed_hits(args));
   for (std::size_t i = 0; i < hits.size(); ++i) args.any_hits[i] = hits[i].triangle != NO_TRIANGLE;
   counts.rays += rays.size();
   counts.hits += count_hits(hits);
@@ -58,16 +71,22 @@ struct HostTrace {
 
   void run(const Chain& chain) {
     for (const Step& step : chain.steps()) {
-      if (const TraceClosestArgs* const closest = args_of(step, stages::trace_closest))
+      if (const auto* const closest = args_of(step, stages::trace_closest))
         trace_closest_on_host(*closest, bvh, triangles, report);
-      else if (const TraceAnyArgs* const any = args_of(step, stages::trace_any))
+      else if (const auto* const past_holes = args_of(step, stages::trace_closest_alpha))
+        trace_closest_on_host(*past_holes, bvh, triangles, report);
+      else if (const auto* const any = args_of(step, stages::trace_any))
         trace_any_on_host(*any, bvh, triangles, is_occlusion(*any) ? report.occlusion : report.shadow);
+      else if (const auto* const any_past_holes = args_of(step, stages::trace_any_alpha))
+        trace_any_on_host(*any_past_holes, bvh, triangles,
+                          is_occlusion(*any_past_holes) ? report.occlusion : report.shadow);
       else
         executor.run(step);
     }
   }
 
-  bool is_occlusion(const TraceAnyArgs& args) const {
+  template <class Args>
+  bool is_occlusion(const Args& args) const {
     const Slot<TraceCounters>& counters = plan.trace.lights.occlusion_counters;
     return counters.count > 0 && executor.chain().at(counters).value == args.counters.value;
   }

@@ -115,6 +115,7 @@ void append_lights(Chain& chain, const TreeSlots& tree, const LightSlots& slots,
   if (plain > 0) append_shading(chain, slots, rays, 0, plain, false, counts.points);
   AnyHitSlots queue{slots.shadow_rays, slots.any_hits, slots.counters};
   queue.filter.count_at = slots.shadow_count;
+  queue.filter.alpha = rays.alpha;
   for (std::uint32_t light = plain; light < counts.lights; ++light) {
     append_shadow_rays(chain, tree, slots, rays, light);
     append_any_hits(chain, tree, queue, rays.count, options);

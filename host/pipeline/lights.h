@@ -4,6 +4,7 @@
 
 #include "interface/lights.h"
 #include "interface/occlusion.h"
+#include "pipeline/alpha.h"
 #include "pipeline/build_plan.h"
 
 namespace coppice {
@@ -53,6 +54,7 @@ struct LitRays {
   UintBuffer pixels;  // as in CameraRaysArgs, as is first_ray
   std::uint32_t first_ray;
   std::uint32_t sample_index;
+  AlphaSlots alpha{};  // of the triangles that may be in the way
 };
 
 // Adds to the radiance what the surfaces reflect of all lights: those without shadows in one step; for each

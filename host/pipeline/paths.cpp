@@ -81,6 +81,7 @@ class PathChain {
     append_queue({}, {}, chain_.at(slots_.light_rays), {}, chain_.at(slots_.light_count));
     AnyHitSlots rays{slots_.light_rays, slots_.any_hits, slots_.light_counters, {}};
     rays.filter.count_at = slots_.light_count;
+    rays.filter.alpha = camera_.alpha;
     append_any_hits(chain_, tree_, rays, camera_.count, options_);
     chain_.run(
         stages::path_light_add,
@@ -105,6 +106,7 @@ class PathChain {
   void append_hits() {
     RaySlots rays{slots_.rays, slots_.hits, slots_.bounce_counters, {}, {}};
     rays.filter.count_at = slots_.queue_count;
+    rays.filter.alpha = camera_.alpha;
     TraceOptions options = options_;
     if (options.walk == Walk::wide_packets) options.walk = Walk::wide_single;
     append_closest_hits(chain_, tree_, rays, camera_.count, options);

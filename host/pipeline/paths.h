@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "interface/paths.h"
+#include "pipeline/alpha.h"
 #include "pipeline/lights.h"
 #include "pipeline/textures.h"
 #include "stages/run_counts.h"
@@ -62,6 +63,7 @@ struct CameraPaths {
   std::uint32_t first_ray, count;
   std::uint32_t summed_samples;  // 0: radiance begins at 0
   std::uint32_t sample_index;
+  AlphaSlots alpha{};  // of the triangles that rays may go past
 };
 
 // All radiance that reaches these pixels by paths. Throws std::invalid_argument by brute force.

@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "pipeline/alpha_args.h"
 #include "stages/stages.h"
 
 namespace coppice {
@@ -32,18 +33,47 @@ void append_any_hits(Chain& chain, const TreeSlots& tree, const AnyHitSlots& slo
   const auto masks = address_or_null(chain, filter.ray_masks);
   const auto count_at = address_or_null(chain, filter.count_at);
   if (is_wide(options.walk)) {
-    chain.run(stages::trace_wide_any,
-              {chain.at(tree.wide_nodes), chain.at(tree.wide_counts), nodes, triangles, rays, any_hits,
-               counters, state, flags, masks, count_at, ray_count, filter.ray_mask},
-              counted_groups(ray_count, TRACE_BLOCK, count_at), {options.max_turns, filter.masks(), 0});
-    return;
+    const TraceWideAnyArgs args{chain.at(tree.wide_nodes),
+                                chain.at(tree.wide_counts),
+                                nodes,
+                                triangles,
+                                rays,
+                                any_hits,
+                                counters,
+                                state,
+                                flags,
+                                masks,
+                                count_at,
+                                ray_count,
+                                filter.ray_mask};
+    const TraceWideConstants constants{options.max_turns, filter.masks(), 0};
+    return run_trace(chain, stages::trace_wide_any, stages::trace_wide_any_alpha, filter.alpha, args,
+                     counted_groups(ray_count, TRACE_BLOCK, count_at), constants);
   }
-  chain.run(stages::trace_any,
-            {nodes, triangles, rays, any_hits, counters, state, flags, masks, count_at, ray_count,
-             filter.ray_mask, options.stack_entries, options.triangle_test, options.box_test, 0},
-            counted_groups(ray_count, TRACE_GROUP, count_at),
-            {options.max_turns, options.visits_per_turn, options.stack_entries, options.triangle_test,
-             options.box_test, filter.masks(), 0});
+  const TraceAnyArgs args{nodes,
+                          triangles,
+                          rays,
+                          any_hits,
+                          counters,
+                          state,
+                          flags,
+                          masks,
+                          count_at,
+                          ray_count,
+                          filter.ray_mask,
+                          options.stack_entries,
+                          options.triangle_test,
+                          options.box_test,
+                          0};
+  const TraceClosestConstants constants{options.max_turns,
+                                        options.visits_per_turn,
+                                        options.stack_entries,
+                                        options.triangle_test,
+                                        options.box_test,
+                                        filter.masks(),
+                                        0};
+  run_trace(chain, stages::trace_any, stages::trace_any_alpha, filter.alpha, args,
+            counted_groups(ray_count, TRACE_GROUP, count_at), constants);
 }
 
 CandidateSlots plan_candidates(Layout& layout, std::uint32_t ray_count, std::uint32_t capacity) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "pipeline/alpha_args.h"
 #include "pipeline/trace_pieces.h"
 #include "stages/stages.h"
 
@@ -30,14 +31,31 @@ void append_walk(Chain& chain, const TreeSlots& tree, const RaySlots& slots, con
   const auto ray_steps = address_or_null(chain, slots.ray_steps, range.first);
   const bool counts_rays = slots.ray_steps.count != 0;
   if (!is_wide(options.walk)) {
-    chain.run(stages::trace_closest,
-              {chain.at(tree.nodes), triangles, rays, hits, counters, chain.at(tree.state), flags, masks,
-               count_at, ray_steps, range.count, filter.ray_mask, options.stack_entries,
-               options.triangle_test, options.box_test, 0},
-              counted_groups(range.count, TRACE_GROUP, count_at),
-              {options.max_turns, options.visits_per_turn, options.stack_entries, options.triangle_test,
-               options.box_test, filter.masks(), counts_rays});
-    return;
+    const TraceClosestArgs args{chain.at(tree.nodes),
+                                triangles,
+                                rays,
+                                hits,
+                                counters,
+                                chain.at(tree.state),
+                                flags,
+                                masks,
+                                count_at,
+                                ray_steps,
+                                range.count,
+                                filter.ray_mask,
+                                options.stack_entries,
+                                options.triangle_test,
+                                options.box_test,
+                                0};
+    const TraceClosestConstants constants{options.max_turns,
+                                          options.visits_per_turn,
+                                          options.stack_entries,
+                                          options.triangle_test,
+                                          options.box_test,
+                                          filter.masks(),
+                                          counts_rays};
+    return run_trace(chain, stages::trace_closest, stages::trace_closest_alpha, filter.alpha, args,
+                     counted_groups(range.count, TRACE_GROUP, count_at), constants);
   }
   if (!can_trace_wide(options))
     throw std::invalid_argument("the wide tree is traced with the watertight and the robust test");
@@ -55,12 +73,13 @@ void append_walk(Chain& chain, const TreeSlots& tree, const RaySlots& slots, con
                            ray_steps,
                            range.count,
                            filter.ray_mask};
+  const TraceWideConstants constants{options.max_turns, filter.masks(), counts_rays};
   if (options.walk == Walk::wide_packets) {
-    chain.run(stages::trace_wide, args, counted_groups(range.count, TRACE_PACKET, count_at),
-              {options.max_turns, filter.masks(), counts_rays});
+    run_trace(chain, stages::trace_wide, stages::trace_wide_alpha, filter.alpha, args,
+              counted_groups(range.count, TRACE_PACKET, count_at), constants);
   } else {
-    chain.run(stages::trace_wide_single, args, counted_groups(range.count, TRACE_BLOCK, count_at),
-              {options.max_turns, filter.masks(), counts_rays});
+    run_trace(chain, stages::trace_wide_single, stages::trace_wide_single_alpha, filter.alpha, args,
+              counted_groups(range.count, TRACE_BLOCK, count_at), constants);
   }
 }
 
@@ -106,7 +125,7 @@ bool can_trace_wide(const TraceOptions& options) {
 
 bool traces_pixels(const TraceOptions& options) {
   return options.walk == Walk::wide_packets && can_trace_wide(options) && !keeps_radiance(options) &&
-         !options.keep_hits;
+         !options.keep_hits && options.alpha.maps == 0;
 }
 
 TraceCounts counts_of(const TraceCounters& counters) {
@@ -127,8 +146,10 @@ void append_misses(Chain& chain, const RaySlots& slots, std::uint32_t ray_count)
 
 std::uint64_t append_closest_hits(Chain& chain, const TreeSlots& tree, const RaySlots& slots, RayRange& range,
                                   const TraceOptions& options, std::uint64_t work) {
-  if (options.walk == Walk::brute_force && (slots.filter.masks() || slots.filter.count_at.count != 0))
-    throw std::invalid_argument("brute force takes no masks and no count on the device");
+  const RayFilter& filter = slots.filter;
+  if (options.walk == Walk::brute_force &&
+      (filter.masks() || filter.alpha.any() || filter.count_at.count != 0))
+    throw std::invalid_argument("brute force takes no masks, no alpha and no count on the device");
   if (options.walk != Walk::brute_force) {
     append_walk(chain, tree, slots, range, options);
     range.next_triangle = std::max(tree.triangle_count, 1u);
@@ -196,6 +217,7 @@ TracePlan plan_trace(Layout& layout, const TreeSlots& tree, std::uint32_t materi
   if (options.keep_noise) plan.noise = plan_noise(layout, plan.band_rays, pixels, options.adaptive);
   if (options.show == SHOW_COLOR) {
     plan.lights = plan_lights(layout, options.lights, plan.band_rays);
+    plan.filter.alpha = plan_alpha(layout, options.alpha, tree.triangle_count);
     plan.textures =
         plan_textures(layout, options.textures, tree.triangle_count, material_count, plan.band_rays);
     plan.paths = plan_paths(layout, options.paths, tree.triangle_count, material_count, plan.band_rays);

@@ -42,6 +42,7 @@ struct TraceOptions {
   TextureCounts textures{};         // of colours
   bool lens = false;                // of colours: rays go through that of the film
   PathCounts paths{};               // of colours
+  AlphaCounts alpha{};              // of colours; not by brute force
   std::uint32_t show = SHOW_COLOR;  // SHOW_; brute force has no steps
   bool keep_hits = false;           // the rays of the last sample and their hits are asked for
   ToneMapping tone{};               // of colours

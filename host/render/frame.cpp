@@ -17,6 +17,7 @@ FramePlan plan_instanced_frame(Layout& layout, const SceneArrays& scene, const F
     throw std::invalid_argument("occlusion is traced through trees of one level");
   if (options.trace.textures.textures > 0)
     throw std::invalid_argument("textures lie on triangles of one level");
+  if (options.trace.alpha.maps > 0) throw std::invalid_argument("triangles of one level let rays through");
   if (!options.build || options.trace.walk != Walk::binary)
     throw std::invalid_argument("instances are built on the device and walked through binary trees");
   std::vector<std::uint32_t> counts;
@@ -53,6 +54,9 @@ FramePlan plan_frame(Layout& layout, const SceneArrays& scene, const FrameOption
   options.trace.paths = colours ? scene.paths.counts : PathCounts{};
   if (options.trace.paths.any() && options.trace.walk == Walk::brute_force)
     throw std::invalid_argument("paths are traced through a tree");
+  options.trace.alpha = colours ? scene.alpha_counts() : AlphaCounts{};
+  if (options.trace.alpha.maps > 0 && options.trace.walk == Walk::brute_force)
+    throw std::invalid_argument("alpha is looked at by what walks through a tree");
   if (!scene.mesh_index.empty()) return plan_instanced_frame(layout, scene, options);
   FramePlan plan;
   if (options.build) plan.build = plan_build(layout, scene.triangle_count(), *options.build);

@@ -31,9 +31,9 @@ struct FramePlan {
   }
 };
 
-// The lights and textures are those of the scene, whatever the options say. Throws LayoutError if a slot does
-// not fit a block, and std::invalid_argument for instances with a tree of the host, a wide one, shadows,
-// occlusion or textures, and for shadows or occlusion without a tree.
+// Lights, textures and alpha are those of the scene, whatever the options say. Throws LayoutError if a slot
+// does not fit a block, and std::invalid_argument for instances with a tree of the host, a wide one, shadows,
+// occlusion, textures or alpha, and for shadows, occlusion or alpha without a tree.
 FramePlan plan_frame(Layout& layout, const SceneArrays& scene, const FrameOptions& options);
 
 // The parts of a frame: nothing where there is nothing to do.
@@ -55,6 +55,13 @@ void upload_textures(Executor& executor, const TextureSlots& slots, const SceneA
   executor.upload(slots.texels, std::span<const uint>(textures.texels));
   executor.upload(slots.srgb_to_linear, std::span<const float>(textures.srgb_to_linear));
   executor.upload(slots.corners, std::span<const CornerAttributes>(scene.corners));
+}
+
+template <class Executor>
+void upload_alpha(Executor& executor, const AlphaSlots& slots, const AlphaArrays& alpha) {
+  executor.upload(slots.triangles, std::span<const AlphaTriangle>(alpha.triangles));
+  executor.upload(slots.maps, std::span<const AlphaMap>(alpha.maps));
+  executor.upload(slots.texels, std::span<const uint>(alpha.texels));
 }
 
 template <class Executor>
@@ -83,6 +90,7 @@ void upload_frame(Executor& executor, const TreeSlots& tree, const TracePlan& tr
   if (trace.lights.ambient.count > 0)
     executor.upload(trace.lights.ambient, std::span<const AmbientLight>(&scene.ambient, 1));
   if (trace.textures.headers.count > 0) upload_textures(executor, trace.textures, scene);
+  if (trace.filter.alpha.any()) upload_alpha(executor, trace.filter.alpha, scene.alpha);
   if (trace.options.paths.any()) upload_paths(executor, trace.paths, scene.paths);
 }
 

@@ -5,10 +5,12 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <iterator>
 #include <limits>
 
 #include "render/stage_values.h"
 #include "scene/instances.h"
+#include "scene/opacity.h"
 
 namespace coppice {
 
@@ -67,7 +69,7 @@ void add_textures(SceneArrays& arrays, const Scene& scene) {
 }  // namespace
 
 SceneArrays scene_arrays(const Scene& scene) {
-  return scene_arrays(scene, effects_of(scene, EffectChanges("-textures")));
+  return scene_arrays(scene, effects_of(scene, EffectChanges("-textures,-alpha")));
 }
 
 SceneArrays scene_arrays(const Scene& scene, const EffectSet& effects) {
@@ -84,12 +86,23 @@ SceneArrays scene_arrays(const Scene& scene, const EffectSet& effects) {
   add_lights(arrays, scene, effects);
   arrays.lens = effects.has(Effect::depth_of_field) && scene.lens.aperture > 0;
   if (effects.has(Effect::textures)) add_textures(arrays, scene);
+  if (effects.has(Effect::alpha) && std::ranges::any_of(scene.materials, lets_rays_through))
+    arrays.alpha = alpha_arrays(scene, arrays.corners.empty() ? corner_attributes(scene) : arrays.corners);
   arrays.meshes = scene.meshes;
   for (const Instance& instance : scene.instances) {
     arrays.mesh_index.push_back(instance.mesh);
     arrays.transforms.push_back(rows_of(instance.transform));
   }
   return arrays;
+}
+
+std::vector<std::string> SceneArrays::image_warnings() const {
+  std::vector<std::string> all = textures.warnings;
+  // An image may be one of colours and of opacity, and is then said once.
+  std::ranges::copy_if(alpha.warnings, std::back_inserter(all), [&](const std::string& warning) {
+    return std::ranges::find(textures.warnings, warning) == textures.warnings.end();
+  });
+  return all;
 }
 
 Aabb box_of(std::span<const Triangle> triangles) {

@@ -4,7 +4,9 @@
 #include <vector>
 
 #include "interface/instances.h"
+#include "pipeline/alpha.h"
 #include "pipeline/textures.h"
+#include "render/alpha_arrays.h"
 #include "render/path_arrays.h"
 #include "render/texture_arrays.h"
 #include "scene/effect_set.h"
@@ -26,6 +28,7 @@ struct SceneArrays {
   TextureArrays textures;
   std::vector<TexturedMaterial> textured_materials;
   std::vector<CornerAttributes> corners;
+  AlphaArrays alpha;  // where it is asked for, and some triangles let rays through
   // Of a scene with instances: its meshes, and of each instance the mesh and the transform.
   std::vector<InstancedMesh> meshes;
   std::vector<uint> mesh_index;
@@ -35,13 +38,19 @@ struct SceneArrays {
   TextureCounts texture_counts() const {
     return {static_cast<std::uint32_t>(textures.headers.size()), textures.texels.size()};
   }
+  AlphaCounts alpha_counts() const {
+    return {static_cast<std::uint32_t>(alpha.maps.size()), alpha.texels.size()};
+  }
+  // About images, of textures and of opacity.
+  std::vector<std::string> image_warnings() const;
   // Of the tree over the scene: instances, where there are two levels.
   std::uint32_t primitive_count() const {
     return mesh_index.empty() ? triangle_count() : static_cast<std::uint32_t>(mesh_index.size());
   }
 };
 
-// With the effects that it calls for, but for textures, whose images are then not opened; or with these.
+// With the effects that it calls for, but for textures and alpha, whose images are then not opened; or with
+// these.
 SceneArrays scene_arrays(const Scene& scene);
 SceneArrays scene_arrays(const Scene& scene, const EffectSet& effects);
 

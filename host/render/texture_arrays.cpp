@@ -19,9 +19,7 @@ static_assert(static_cast<uint>(TextureWrap::repeat) == TEXTURE_REPEAT &&
               static_cast<uint>(TextureWrap::clamp) == TEXTURE_CLAMP &&
               static_cast<uint>(TextureWrap::mirror) == TEXTURE_MIRROR);
 
-// Without what a device could take for 0, alone or in a product.
-float without_tiny(float x) { return std::abs(x) < 0x1p-60f ? 0.0f : x; }
-vec2 without_tiny(vec2 v) { return {without_tiny(v.x), without_tiny(v.y)}; }
+float large_or_zero(float x) { return std::abs(x) < 0x1p-60f ? 0.0f : x; }
 
 std::size_t words_of(const Texture& texture) {
   std::size_t words = 0;
@@ -84,9 +82,7 @@ class TextureArraysMaker {
       header.levels = image.levels;
       header.scale = without_tiny(use.map.scale);
       header.offset = without_tiny(use.map.offset);
-      header.flags = static_cast<uint>(use.map.wrap_u) << TEXTURE_WRAP_U_SHIFT |
-                     static_cast<uint>(use.map.wrap_v) << TEXTURE_WRAP_V_SHIFT |
-                     (use.is_colour ? TEXTURE_COLOUR : 0u);
+      header.flags = wrap_flags(use.map) | (use.is_colour ? TEXTURE_COLOUR : 0u);
       arrays_.headers.push_back(header);
     }
   }
@@ -127,7 +123,7 @@ vec3 unit_normal_of(vec3 normal) {
   const double length = glm::length(exact);
   if (!(length > 0) || !std::isfinite(length)) return vec3(0);
   const vec3 unit(exact / length);
-  return {without_tiny(unit.x), without_tiny(unit.y), without_tiny(unit.z)};
+  return {large_or_zero(unit.x), large_or_zero(unit.y), large_or_zero(unit.z)};
 }
 
 void add_texcoords(const Scene& scene, std::size_t triangle, CornerAttributes& corners) {
@@ -152,6 +148,15 @@ void add_normals(const Scene& scene, std::size_t triangle, CornerAttributes& cor
 }
 
 }  // namespace
+
+vec2 without_tiny(vec2 v) { return {large_or_zero(v.x), large_or_zero(v.y)}; }
+
+uint wrap_flags(const TextureMap& map) {
+  return static_cast<uint>(map.wrap_u) << TEXTURE_WRAP_U_SHIFT | static_cast<uint>(map.wrap_v)
+                                                                     << TEXTURE_WRAP_V_SHIFT;
+}
+
+uint opacity_channel(const TextureMap& map, bool has_alpha) { return channel_of(map, has_alpha, true); }
 
 TextureArrays texture_arrays(const Scene& scene) { return TextureArraysMaker(scene).make(); }
 

@@ -25,4 +25,13 @@ TextureArrays texture_arrays(const Scene& scene);
 // One a triangle, in the scene's order.
 std::vector<CornerAttributes> corner_attributes(const Scene& scene);
 
+// Without what a device could take for 0, alone or in a product.
+vec2 without_tiny(vec2 v);
+
+// Of TextureHeader::flags those that say how a map wraps.
+uint wrap_flags(const TextureMap& map);
+
+// Which channel of an image is opacity: CHANNEL_, or 0 to 2.
+uint opacity_channel(const TextureMap& map, bool has_alpha);
+
 }  // namespace coppice

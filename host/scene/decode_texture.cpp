@@ -57,4 +57,12 @@ Texture decode_texture(std::string_view bytes, bool is_colour) {
   return texture;
 }
 
+bool has_alpha_channel(std::string_view bytes) {
+  int width = 0, height = 0, channels = 0;
+  return bytes.size() <= 0x7fffffff &&
+         stbi_info_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data()), static_cast<int>(bytes.size()),
+                               &width, &height, &channels) != 0 &&
+         channels % 2 == 0;
+}
+
 }  // namespace coppice

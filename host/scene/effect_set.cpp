@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "scene/input_error.h"
+#include "scene/opacity.h"
 #include "scene/printable.h"
 #include "scene/surface_effects.h"
 
@@ -36,20 +37,33 @@ std::string quoted(const Material& material) {
   return "material '" + printable(std::string_view(material.name)) + "'";
 }
 
-// By the first triangle whose material has a map of colours.
-void call_for_textures(const Scene& scene, EffectSet& effects) {
-  const auto map_of = [&](std::uint32_t index) -> const TextureMap* {
-    const Material& material = scene.materials[index];
-    if (material.diffuse_map) return &material.diffuse_map;
-    return material.emission_map ? &material.emission_map : nullptr;
-  };
-  std::vector<bool> has_map;
-  for (std::uint32_t i = 0; i < scene.materials.size(); ++i) has_map.push_back(map_of(i) != nullptr);
-  const auto mapped =
-      std::ranges::find_if(scene.material_index, [&](std::uint32_t index) { return has_map[index]; });
-  if (mapped == scene.material_index.end()) return;
-  effects.call(Effect::textures, quoted(scene.materials[*mapped]) + ", which has " +
-                                     printable(std::string_view(map_of(*mapped)->name)));
+// By the first triangle whose material says so: `why` is empty of one that does not.
+template <class Why>
+void call_by_material(const Scene& scene, Effect effect, EffectSet& effects, const Why& why) {
+  std::vector<std::string> reasons;
+  for (const Material& material : scene.materials) reasons.push_back(why(material));
+  const auto caller = std::ranges::find_if(scene.material_index,
+                                           [&](std::uint32_t index) { return !reasons[index].empty(); });
+  if (caller == scene.material_index.end()) return;
+  effects.call(effect, quoted(scene.materials[*caller]) + ", " + reasons[*caller]);
+}
+
+std::string which_has(const TextureMap& map) { return "which has " + printable(std::string_view(map.name)); }
+
+// A map of colours.
+std::string why_textures(const Material& material) {
+  if (material.diffuse_map) return which_has(material.diffuse_map);
+  return material.emission_map ? which_has(material.emission_map) : "";
+}
+
+// A map of opacity, or less than all of the surface.
+std::string why_alpha(const Material& material) {
+  if (!lets_rays_through(material)) return "";
+  if (material.opacity_map) return which_has(material.opacity_map);
+  std::string coverage = std::to_string(coverage_of(material));
+  coverage.erase(coverage.find_last_not_of('0') + 1);
+  if (coverage.ends_with('.')) coverage.pop_back();
+  return "of whose surface " + coverage + " is there";
 }
 
 // By the materials of triangles, in the order of triangles.
@@ -129,7 +143,8 @@ EffectSet effects_of(const Scene& scene, const EffectChanges& changes) {
     if (count > 1) effects.call(Effect::lights, light.origin + ", light number " + std::to_string(count));
     if (light.shadows) effects.call(Effect::shadows, light.origin + ", which casts shadows");
   }
-  call_for_textures(scene, effects);
+  call_by_material(scene, Effect::textures, effects, why_textures);
+  call_by_material(scene, Effect::alpha, effects, why_alpha);
   if (scene.occlusion && is_bright(scene.ambient_light))
     effects.call(Effect::ambient_occlusion, "/ambient_occlusion");
   if (scene.lens.aperture > 0) effects.call(Effect::depth_of_field, scene.lens.origin);
@@ -159,6 +174,11 @@ EffectChanges::EffectChanges(std::string_view text) : text_(text) {
 EffectSet EffectChanges::applied_to(EffectSet effects) const {
   for (const Change& change : changes_) effects.override(change.effect, change.on);
   return effects;
+}
+
+bool EffectChanges::turns_off(Effect effect) const {
+  const EffectSet::State state = applied_to({}).of(effect);
+  return state.overridden && !state.on;
 }
 
 EffectChanges EffectChanges::but(Effect effect, bool on) const {

@@ -23,12 +23,13 @@ enum class Effect : std::uint32_t {
   emission,
   reflection,
   refraction,
-  global_illumination
+  global_illumination,
+  alpha
 };
 
 inline constexpr std::string_view EFFECT_NAMES[] = {
     "lights",   "shadows",    "textures",   "depth_of_field",     "ambient_occlusion",
-    "emission", "reflection", "refraction", "global_illumination"};
+    "emission", "reflection", "refraction", "global_illumination", "alpha"};
 inline constexpr std::size_t effect_count = std::size(EFFECT_NAMES);
 
 constexpr std::string_view name_of(Effect effect) { return EFFECT_NAMES[static_cast<std::size_t>(effect)]; }
@@ -55,6 +56,7 @@ class EffectSet {
   // Whether some effect takes triangles of one level: instances are then flattened.
   bool needs_one_level() const {
     return has(Effect::shadows) || has(Effect::ambient_occlusion) || is_used(Effect::textures) ||
+           is_used(Effect::alpha) ||
            follows_paths();
   }
 
@@ -76,6 +78,7 @@ class EffectChanges {
   EffectSet applied_to(EffectSet effects) const;
   // With one change more.
   EffectChanges but(Effect effect, bool on) const;
+  bool turns_off(Effect effect) const;
   bool empty() const { return changes_.empty(); }
   const std::string& text() const { return text_; }
 

@@ -167,6 +167,7 @@ class MaterialText {
                    std::string(kind.name) + " of material '" + printable(std::string_view(name_)) +
                        "' has -mm or -t, which are not used");
     }
+    read.map.may_cut_out = kind.map == &Material::diffuse_map;
     if (read.map) maps_.*kind.map = std::move(read.map);
   }
 

@@ -1,5 +1,7 @@
 #include "scene/texture.h"
 
+#include <tbb/parallel_for_each.h>
+
 #include <algorithm>
 #include <map>
 #include <tuple>
@@ -13,6 +15,7 @@
 namespace coppice {
 namespace {
 
+static_assert(MATERIAL_MAPS[0].map == &Material::diffuse_map);
 static_assert(MATERIAL_MAPS.size() == std::tuple_size_v<decltype(TextureListing::of_material)::value_type>);
 
 class TextureLister {
@@ -66,15 +69,42 @@ class TextureLister {
   std::map<std::tuple<std::string, std::string, const std::string*, bool>, std::uint32_t> images_;
 };
 
-Texture decoded(const TextureListing::Image& image) {
+// Throws InputError where there is none.
+template <class Use>
+auto with_bytes(const TextureListing::Image& image, const Use& use) {
   if (image.bytes) {
     if (image.bytes->empty()) throw InputError("no bytes of an image that is read");
-    return decode_texture(*image.bytes, image.is_colour);
+    return use(std::string_view(*image.bytes));
   }
   const auto found = MtlFolder(image.folder).locate(image.name);
   if (!found) throw InputError("no such file");
   const ObjFile file = read_obj_file(*found);
-  return decode_texture(file.text(), image.is_colour);
+  return use(file.text());
+}
+
+Texture decoded(const TextureListing::Image& image) {
+  return with_bytes(image, [&](std::string_view bytes) { return decode_texture(bytes, image.is_colour); });
+}
+
+bool is_cut_out(const Texture& texture) {
+  std::size_t holes = 0, solid = 0;
+  const std::vector<std::uint32_t>& texels = texture.levels.front().texels;
+  for (const std::uint32_t texel : texels) {
+    holes += texel >> 24 < 16;
+    solid += texel >> 24 >= 240;
+  }
+  return std::min(holes, solid) * 100 >= texels.size() && (holes + solid) * 4 >= texels.size() * 3;
+}
+
+// Not of one that is missing or broken, about which whoever takes its colours says so.
+bool is_cut_out(const TextureListing::Image& image) {
+  try {
+    return with_bytes(image, [&](std::string_view bytes) {
+      return has_alpha_channel(bytes) && is_cut_out(decode_texture(bytes, image.is_colour));
+    });
+  } catch (const InputError&) {
+    return false;
+  }
 }
 
 }  // namespace
@@ -94,6 +124,27 @@ Texture load_texture(const TextureListing::Image& image, std::string& warning) {
     warning = place + ": no memory for the image, a checker takes its place as " + image.user;
   }
   return checker_texture(image.is_colour);
+}
+
+void find_cut_outs(Scene& scene) {
+  const TextureListing listing = list_textures(scene);
+  const auto may_cut_out = [&](std::size_t m) {
+    const Material& material = scene.materials[m];
+    return material.diffuse_map.may_cut_out && !material.opacity_map &&
+           listing.of_material[m][0] != TextureListing::NONE;
+  };
+  const auto image_of = [&](std::size_t m) { return listing.uses[listing.of_material[m][0]].image; };
+  std::map<std::uint32_t, bool> cuts;  // by image
+  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    if (may_cut_out(m)) cuts.emplace(image_of(m), false);
+  }
+  tbb::parallel_for_each(cuts.begin(), cuts.end(),
+                         [&](auto& cut) { cut.second = is_cut_out(listing.images[cut.first]); });
+  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+    if (!may_cut_out(m) || !cuts.at(image_of(m))) continue;
+    scene.materials[m].opacity_map = scene.materials[m].diffuse_map;
+    scene.materials[m].opacity_map.channel = 'm';
+  }
 }
 
 }  // namespace coppice

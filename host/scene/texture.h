@@ -29,6 +29,9 @@ std::array<float, 256> srgb_to_linear();
 // Of the bytes of a PNG, JPEG, TGA or BMP file. Throws InputError, with what is wrong and not where.
 Texture decode_texture(std::string_view bytes, bool is_colour);
 
+// Whether the image may have alpha, as its header says it; false of what is no image.
+bool has_alpha_channel(std::string_view bytes);
+
 // From its finest level on: a box filter on linear values, in which an odd number of texels 2n + 1 becomes n,
 // each of exactly the stretch it covers.
 void make_mip_levels(Texture& texture);
@@ -60,5 +63,11 @@ TextureListing list_textures(const Scene& scene);
 // The image, decoded; a checker and a line in `warning` where there is none. A file is also found in other
 // letter case, with \ for /, and by its bare name in the folder.
 Texture load_texture(const TextureListing::Image& image, std::string& warning);
+
+// Materials whose map of colours may cut out, and is a cut-out, get its alpha as their map of opacity. One
+// with a map of opacity keeps that. A cut-out has texels whose alpha is below 16 and from 240 on, of each a
+// hundredth at least, and three in four are one of both; alpha that means something else rarely looks so. Of
+// used materials images with alpha are decoded, all others' headers are read.
+void find_cut_outs(Scene& scene);
 
 }  // namespace coppice

@@ -23,6 +23,9 @@ struct TextureMap {
   // Of a map of single numbers, which channel: r, g, b, m (alpha), l (luminance) or z; 0 where nothing says.
   char channel = 0;
   float strength = 1;  // of a bump or normal map
+  // Of a map of colours from a format that has no alpha mode: an image that is a cut-out cuts the surface out
+  // (find_cut_outs).
+  bool may_cut_out = false;
 
   explicit operator bool() const { return !name.empty(); }
   bool operator==(const TextureMap&) const = default;

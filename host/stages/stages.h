@@ -1,5 +1,6 @@
 #pragma once
 
+#include "interface/alpha.h"
 #include "interface/batch.h"
 #include "interface/bounds.h"
 #include "interface/copy.h"
@@ -71,6 +72,11 @@
   STAGE(trace_wide_single, TraceWideArgs, TraceWideConstants, nearly_hits)             \
   STAGE(trace_any, TraceAnyArgs, TraceClosestConstants, nearly_any_hits)               \
   STAGE(trace_wide_any, TraceWideAnyArgs, TraceWideConstants, nearly_any_hits)         \
+  STAGE(trace_closest_alpha, TraceClosestAlphaArgs, TraceClosestConstants, nearly_hits)   \
+  STAGE(trace_wide_alpha, TraceWideAlphaArgs, TraceWideConstants, nearly_hits)            \
+  STAGE(trace_wide_single_alpha, TraceWideAlphaArgs, TraceWideConstants, nearly_hits)     \
+  STAGE(trace_any_alpha, TraceAnyAlphaArgs, TraceClosestConstants, nearly_any_hits)       \
+  STAGE(trace_wide_any_alpha, TraceWideAnyAlphaArgs, TraceWideConstants, nearly_any_hits) \
   STAGE(trace_candidates, TraceCandidatesArgs, TraceCandidatesConstants, nearly_boxes) \
   STAGE(trace_brute_force, TraceBruteForceArgs, TraceBruteForceConstants, nearly_hits) \
   STAGE(move_instances, MoveInstancesArgs, NoConstants, exactly)                       \

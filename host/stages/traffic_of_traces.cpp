@@ -10,6 +10,8 @@ namespace {
 
 constexpr Bytes ray_and_hit = sizeof(Ray) + 2 * sizeof(Hit);  // the hit is read and written
 constexpr Bytes ray_and_word = sizeof(Ray) + sizeof(uint);
+// Of a hit, with the word that says whether rays pass. How many others let rays through, nobody counts.
+constexpr Bytes alpha_triangle = sizeof(Triangle) + sizeof(uint);
 
 // Of a sum over the whole trace, the part that `rays` of its rays have.
 Bytes share(Bytes sum, Bytes rays, const RunCounts& counts) {
@@ -45,6 +47,7 @@ Bytes kept_steps(const Args& args) {
 Bytes pairs_of(const RunCounts& counts) { return counts.steps * 2 * sizeof(Node); }
 Bytes wide_nodes_of(const RunCounts& counts) { return counts.steps * sizeof(WideNode); }
 Bytes triangles_of(const RunCounts& counts) { return counts.hits * sizeof(Triangle); }
+Bytes alpha_triangles_of(const RunCounts& counts) { return counts.hits * alpha_triangle; }
 
 // Of shadow or occlusion rays, the part of those that `rays` rays of the picture have for one light.
 Bytes part_of(const RunCounts::Secondary& secondary, Bytes sum, Bytes rays) {
@@ -67,9 +70,17 @@ RunCounts::Secondary secondary_of(const RunCounts& counts) {
   return {a.could_be + b.could_be, a.rays + b.rays, a.hits + b.hits, a.steps + b.steps};
 }
 
-Bytes secondary_walk_bytes(const RunCounts::Secondary& secondary, Bytes rays, Bytes step) {
+Bytes secondary_walk_bytes(const RunCounts::Secondary& secondary, Bytes rays, Bytes step, Bytes triangle) {
   return part_of(secondary, secondary.rays, rays) * ray_and_word +
-         part_of(secondary, secondary.steps * step + secondary.hits * sizeof(Triangle), rays);
+         part_of(secondary, secondary.steps * step + secondary.hits * triangle, rays);
+}
+
+// Of a walk that ends at the first hit.
+template <class Args>
+Bytes any_bytes(const Args& args, Bytes step, Bytes triangle, const RunCounts& counts) {
+  if (const auto secondary = secondary_of(counts); secondary.could_be)
+    return secondary_walk_bytes(secondary, args.ray_count, step, triangle);
+  return walk_bytes(args, ray_and_word, counts.steps * step + counts.hits * triangle, counts);
 }
 
 }  // namespace
@@ -96,15 +107,33 @@ Bytes trace_wide_single(const TraceWideArgs& a, const RunCounts& counts) {
 }
 
 Bytes trace_any(const TraceAnyArgs& a, const RunCounts& counts) {
-  if (const auto secondary = secondary_of(counts); secondary.could_be)
-    return secondary_walk_bytes(secondary, a.ray_count, 2 * sizeof(Node));
-  return walk_bytes(a, ray_and_word, pairs_of(counts) + triangles_of(counts), counts);
+  return any_bytes(a, 2 * sizeof(Node), sizeof(Triangle), counts);
 }
 
 Bytes trace_wide_any(const TraceWideAnyArgs& a, const RunCounts& counts) {
-  if (const auto secondary = secondary_of(counts); secondary.could_be)
-    return secondary_walk_bytes(secondary, a.ray_count, sizeof(WideNode));
-  return walk_bytes(a, ray_and_word, wide_nodes_of(counts) + triangles_of(counts), counts);
+  return any_bytes(a, sizeof(WideNode), sizeof(Triangle), counts);
+}
+
+Bytes trace_closest_alpha(const TraceClosestAlphaArgs& a, const RunCounts& counts) {
+  return walk_bytes(a, ray_and_hit + kept_steps(a), pairs_of(counts) + alpha_triangles_of(counts), counts);
+}
+
+Bytes trace_wide_alpha(const TraceWideAlphaArgs& a, const RunCounts& counts) {
+  return walk_bytes(a, ray_and_hit + kept_steps(a),
+                    counts.steps / TRACE_PACKET * sizeof(WideNode) + alpha_triangles_of(counts), counts);
+}
+
+Bytes trace_wide_single_alpha(const TraceWideAlphaArgs& a, const RunCounts& counts) {
+  return walk_bytes(a, ray_and_hit + kept_steps(a), wide_nodes_of(counts) + alpha_triangles_of(counts),
+                    counts);
+}
+
+Bytes trace_any_alpha(const TraceAnyAlphaArgs& a, const RunCounts& counts) {
+  return any_bytes(a, 2 * sizeof(Node), alpha_triangle, counts);
+}
+
+Bytes trace_wide_any_alpha(const TraceWideAnyAlphaArgs& a, const RunCounts& counts) {
+  return any_bytes(a, sizeof(WideNode), alpha_triangle, counts);
 }
 
 // Of each ray with candidates at least one is written.

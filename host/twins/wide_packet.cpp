@@ -127,7 +127,7 @@ std::vector<uint> WidePacket::visit(const WideNode& node) {
     }
     for (std::size_t i = 0; i < rays_.size(); ++i)
       if (sights_[i].sees(triangle))
-        ray_meets_triangle(rays_[i], triangles_[triangle], triangle, TRIANGLE_WATERTIGHT, hits_[i]);
+        sights_[i].meet(rays_[i], triangles_[triangle], triangle, TRIANGLE_WATERTIGHT, hits_[i]);
   }
   return nodes;
 }

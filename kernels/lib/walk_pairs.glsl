@@ -25,11 +25,18 @@ struct PairWalk {
 uint stack_pair[TRACE_STACK];
 float stack_enter[TRACE_STACK];
 
+#ifdef TRACE_ALPHA
+uint walk_alpha_key;  // of the ray that walks
+#endif
+
 void test_leaf(BinaryTree tree, uint triangle, TraceRay ray, Sight sight, const Search search, inout Hit hit) {
   if (search.masked && !sees(sight, triangle, search.any)) return;
   Hit before = hit;
   intersect_triangle(ray, tree.triangles.at[triangle], triangle, hit);
   if (search.any && !is_given(ray, hit)) hit = before;
+#ifdef TRACE_ALPHA
+  if (hit.triangle != before.triangle && lets_through(hit, walk_alpha_key)) hit = before;
+#endif
 }
 
 bool visit_child(BinaryTree tree, Node child, TraceRay ray, Sight sight, const Search search, inout Hit hit,

@@ -85,6 +85,9 @@ uint take_ray(inout Walk w, uint index, bool has_tree, Aabb scene) {
   w.sight = Sight(args.primitive_flags, args.ray_mask);
   if (TRACE_MASKED) w.sight.mask = mask_of(args.ray_masks, args.ray_mask, index);
   w.ray_index = index;
+#ifdef TRACE_ALPHA
+  w.alpha_key = alpha_key(given);
+#endif
   start_walk(scene, SEARCH, so_far, w);
   return 0u;
 }

@@ -11,6 +11,10 @@
 
 // Whether the r-th ray of this invocation sees the triangle.
 bool packet_sees(uint r, uint triangle);
+#ifdef TRACE_ALPHA
+// Whether it passes the triangle that it hits.
+bool packet_passes(uint r, Hit hit);
+#endif
 
 const uint TRACE_TRIANGLE_TEST = TRIANGLE_WATERTIGHT;
 const uint TRACE_BOX_TEST = BOX_ROBUST;
@@ -119,7 +123,13 @@ uint visit(WideChildren children, RayBundle bundle, inout float farthest) {
         [[unroll]] for (uint r = 0u; r < RAYS; ++r) {
           if ((meeting >> r & 1u) == 0u) continue;
           if (!packet_sees(r, index)) continue;
+#ifdef TRACE_ALPHA
+          Hit before = hits[r];
+#endif
           intersect_triangle(rays[r], triangle, index, hits[r]);
+#ifdef TRACE_ALPHA
+          if (hits[r].triangle != before.triangle && packet_passes(r, hits[r])) hits[r] = before;
+#endif
         }
         farthest = farthest_hit();
       } else {

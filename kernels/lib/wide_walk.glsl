@@ -38,6 +38,9 @@ struct Walk {
   uint node;  // whose children are listed
   ChildList list;
   uint top;  // of its stack
+#ifdef TRACE_ALPHA
+  uint alpha_key;
+#endif
 };
 
 // One for each level with children still to be visited; of the k-th walk from k * WIDE_MAX_HEIGHT on.
@@ -118,6 +121,9 @@ void test_triangle(WideTree tree, const Search search, inout Walk w) {
   if (search.masked && !sees(w.sight, triangle, search.any)) return;
   Hit before = w.hit;
   intersect_triangle(w.ray, load_triangle(tree.triangles, triangle), triangle, w.hit);
+#ifdef TRACE_ALPHA
+  if (w.hit.triangle != before.triangle && lets_through(w.hit, w.alpha_key)) w.hit = before;
+#endif
   if (search.any) {
     if (!is_given(w.ray, w.hit)) w.hit = before;
     if (w.hit.triangle == NO_TRIANGLE) return;

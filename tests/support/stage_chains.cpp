@@ -16,6 +16,7 @@
 #include "scene/hard_cases.h"
 #include "stages/stages.h"
 #include "support/instances.h"
+#include "support/masked_scene.h"
 #include "support/moving_scenes.h"
 #include "support/path_scene.h"
 #include "support/textured_scene.h"
@@ -36,6 +37,7 @@ struct Frame {
   bool refines = false;  // as a picture whose error is estimated
   bool textures = false;
   bool paths = false;  // of all lobes
+  bool alpha = false;  // with lights
 };
 constexpr Frame frames[] = {
     {1000, DeviceBuilder::ploc, true, Walk::binary},
@@ -49,12 +51,16 @@ constexpr Frame frames[] = {
     {300, DeviceBuilder::ploc, true, Walk::wide_single, SHOW_COLOR, 1, true, true},
     {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 2, true, false, true},
     {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 1, true, false, false, true},
-    {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 1, true, false, false, false, true}};
+    {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 1, true, false, false, false, true},
+    {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 1, true, true, false, false, false, true},
+    {300, DeviceBuilder::ploc, true, Walk::wide_packets, SHOW_COLOR, 1, true, true, false, false, false, true},
+    {300, DeviceBuilder::ploc, true, Walk::wide_single, SHOW_COLOR, 1, true, true, false, false, false, true}};
 constexpr std::size_t scan_and_copy = std::size(frames), inputs = scan_and_copy + 1, vertices = inputs + 1,
                       refits = vertices + 1, instances = refits + 1, chain_count = instances + 1;
 
 Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
-  Scene scene = frame.lights     ? triangles_over_plane(frame.triangles)
+  Scene scene = frame.alpha      ? masked_scene(frame.triangles)
+                : frame.lights   ? triangles_over_plane(frame.triangles)
                 : frame.paths    ? room_of_all_surfaces()
                 : frame.textures ? textured_scene(frame.triangles)
                                  : find_hard_case("nested")->make(frame.triangles, 1);
@@ -83,6 +89,7 @@ Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
   trace_options.textures = arrays.texture_counts();
   trace_options.lens = arrays.lens;
   trace_options.paths = arrays.paths.counts;
+  trace_options.alpha = arrays.alpha_counts();
   std::optional<WidePlan> wide;
   if (is_wide(frame.walk)) wide = plan_wide(layout, build, &build);
   const TracePlan trace =
@@ -96,7 +103,8 @@ Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
                              layout.add<uint>("candidate_counts", trace.band_rays),
                              trace.counters,
                              {}};
-  const AnyHitSlots any{trace.rays, layout.add<uint>("any_hits", trace.band_rays), trace.counters, {}};
+  AnyHitSlots any{trace.rays, layout.add<uint>("any_hits", trace.band_rays), trace.counters, {}};
+  any.filter.alpha = trace.filter.alpha;
   LockstepExecutor executor(device, layout);
   Film film = make_film(scene, {}, chain_width, chain_height, frame.samples);
   film.is_sequence = frame.refines;

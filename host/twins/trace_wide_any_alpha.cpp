@@ -1,0 +1,8 @@
+#include "interface/alpha.h"
+#include "twins/trace_wide_any.h"
+
+namespace coppice::twins {
+
+void trace_wide_any_alpha(const TraceWideAnyAlphaArgs& args) { trace_wide_any_of(args); }
+
+}  // namespace coppice::twins
