@@ -28,7 +28,7 @@ enum class Effect : std::uint32_t {
 };
 
 inline constexpr std::string_view EFFECT_NAMES[] = {
-    "lights",   "shadows",    "textures",   "depth_of_field",     "ambient_occlusion",
+    "lights",   "shadows",    "textures",   "depth_of_field",      "ambient_occlusion",
     "emission", "reflection", "refraction", "global_illumination", "alpha"};
 inline constexpr std::size_t effect_count = std::size(EFFECT_NAMES);
 
@@ -56,8 +56,7 @@ class EffectSet {
   // Whether some effect takes triangles of one level: instances are then flattened.
   bool needs_one_level() const {
     return has(Effect::shadows) || has(Effect::ambient_occlusion) || is_used(Effect::textures) ||
-           is_used(Effect::alpha) ||
-           follows_paths();
+           is_used(Effect::alpha) || follows_paths();
   }
 
   // The first thing that calls for an effect is the one that is named.
