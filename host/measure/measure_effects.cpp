@@ -65,7 +65,7 @@ bool belongs_to(const Step& step, Effect effect, const Sharing& sharing) {
     return true;
   if (effect != sharing.queue) return false;
   return is_one_of({&stages::trace_any, &stages::trace_wide_any, &stages::trace_any_alpha,
-                     &stages::trace_wide_any_alpha}) ||
+                    &stages::trace_wide_any_alpha}) ||
          (!sharing.paths && is_one_of({&stages::scan_tile_sums, &stages::prefix_scan}));
 }
 

@@ -149,8 +149,7 @@ void TracePieces::append_all_lights(Chain& chain, Vec3Buffer radiance) const {
                 {triangles, material_index, materials, chain.at(plan_.rays, range_.first),
                  chain.at(plan_.hits, range_.first), radiance, range_.count,
                  address_or_null(chain, plan_.traced_pixels, band_first_ + range_.first),
-                 band_first_ + range_.first, sample_,
-                 plan_.filter.alpha},
+                 band_first_ + range_.first, sample_, plan_.filter.alpha},
                 plan_.options);
 }
 
@@ -160,8 +159,7 @@ void TracePieces::append_paths_of(Chain& chain, Vec3Buffer radiance) const {
                {chain.at(plan_.film), triangles, material_index, chain.at(plan_.rays, range_.first),
                 chain.at(plan_.hits, range_.first), radiance, chain.at(plan_.lighting),
                 address_or_null(chain, plan_.traced_pixels, band_first_ + range_.first),
-                band_first_ + range_.first, range_.count, summed_samples(), sample_,
-                plan_.filter.alpha},
+                band_first_ + range_.first, range_.count, summed_samples(), sample_, plan_.filter.alpha},
                plan_.options);
 }
 

@@ -53,8 +53,10 @@ constexpr Frame frames[] = {
     {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 1, true, false, false, true},
     {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 1, true, false, false, false, true},
     {300, DeviceBuilder::ploc, true, Walk::binary, SHOW_COLOR, 1, true, true, false, false, false, true},
-    {300, DeviceBuilder::ploc, true, Walk::wide_packets, SHOW_COLOR, 1, true, true, false, false, false, true},
-    {300, DeviceBuilder::ploc, true, Walk::wide_single, SHOW_COLOR, 1, true, true, false, false, false, true}};
+    {300, DeviceBuilder::ploc, true, Walk::wide_packets, SHOW_COLOR, 1, true, true, false, false, false,
+     true},
+    {300, DeviceBuilder::ploc, true, Walk::wide_single, SHOW_COLOR, 1, true, true, false, false, false,
+     true}};
 constexpr std::size_t scan_and_copy = std::size(frames), inputs = scan_and_copy + 1, vertices = inputs + 1,
                       refits = vertices + 1, instances = refits + 1, chain_count = instances + 1;
 
