@@ -45,6 +45,21 @@ TEST_F(ViewWindow, ShowsInstancesAsRenderDoes) {
   close();
 }
 
+// However the device's speed cuts the passes.
+TEST_F(ViewWindow, RefinesWhatStandsStillToWhatRenderMakesOfAsManySamples) {
+  OPEN_OR_SKIP(std::string("--spp 37 --size 160x120 --pictures picture --no-panes ") + COPPICE_SCENES +
+               "/nook.json");
+  expect_line("refined to 37 samples, error 0.");
+  expect_same_as_render(1);
+  desktop_->xdotool("mousemove 60 60 mousedown 1 mousemove 70 65 mouseup 1");
+  EXPECT_TRUE(wait_until([&] { return shows_twice("refined to 37 samples"); })) << window_->out();
+  expect_same_as_render(2);
+  EXPECT_NE(pictures_[0], pictures_[1]);
+  key("3");  // normals have no samples
+  expect_same_as_render(3);
+  close();
+}
+
 TEST_F(ViewWindow, TakesAnySizeAndIsHiddenAndShown) {
   OPEN_OR_SKIP("terrain:500 --size 200x150 --pictures picture --rebuild");
   const std::string id = id_of_window();

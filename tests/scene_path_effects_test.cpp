@@ -1,6 +1,9 @@
 // Which scenes call for paths of light, what paths then take of them, and what a frame records.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <numeric>
+
 #include "scene/surface_effects.h"
 #include "support/effect_scenes.h"
 
@@ -111,6 +114,68 @@ TEST(PathEffects, RecordTheirStagesByTheBounce) {
   }
   for (std::size_t i = 0; i < effect_count; ++i)
     EXPECT_EQ(on.effect_steps[i], static_cast<Effect>(i) == Effect::reflection ? 2u : 0u) << EFFECT_NAMES[i];
+}
+
+// Calls for every effect, each by a triangle, a light or a number of its own.
+Scene scene_of_all() {
+  Scene scene = make_built_in("terrain:50");
+  scene.light.shadows = scene.global_illumination = true;
+  scene.occlusion.emplace();
+  scene.more_lights.push_back({.is_point = true, .origin = "/lights/0"});
+  scene.lens = {.aperture = 0.1f, .focus = 1, .origin = "/camera/aperture"};
+  scene.bounces = 1;
+  scene.materials.assign(6, {});
+  scene.materials[1].diffuse_map.name = "no such image";
+  scene.materials[2].emission = vec3(1);
+  scene.materials[3].illum = 3;
+  scene.materials[3].specular = vec3(1);
+  scene.materials[4].illum = 6;
+  scene.materials[4].specular = vec3(1);
+  scene.materials[5].opacity = 0.5f;
+  for (std::uint32_t i = 0; i < scene.material_index.size(); ++i) scene.material_index[i] = i % 6;
+  return scene;
+}
+
+// Whether an effect has steps of its own beside the others: with paths all lights are sampled by these, and
+// ambient light is not occluded.
+bool has_own_steps(Effect effect, const EffectSet& effects) {
+  if (!effects.has(effect)) return false;
+  return !effects.follows_paths() || (effect != Effect::lights && effect != Effect::ambient_occlusion);
+}
+
+// Of none, of each alone and of all pairs.
+TEST(PathEffects, NoPictureRecordsOrKeepsWhatIsOff) {
+  const Scene scene = scene_of_all();
+  std::vector<std::size_t> all(effect_count);
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  for (const std::size_t i : all) ASSERT_NE(caller(scene, static_cast<Effect>(i)), "") << EFFECT_NAMES[i];
+  const auto picture_with = [&](std::size_t first, std::size_t second) {
+    std::string changes;
+    for (const std::size_t i : all) {
+      if (i == first || i == second) continue;
+      changes.append(changes.empty() ? "-" : ",-").append(EFFECT_NAMES[i]);
+    }
+    const EffectSet effects = effects_of(scene, EffectChanges(changes));
+    RecordedPicture picture = recorded(scene, changes.c_str());
+    for (const std::size_t i : all) {
+      EXPECT_EQ(effects.has(static_cast<Effect>(i)), i == first || i == second) << changes;
+      EXPECT_EQ(picture.effect_steps[i] > 0, has_own_steps(static_cast<Effect>(i), effects))
+          << EFFECT_NAMES[i] << " with " << changes;
+    }
+    return picture;
+  };
+  const RecordedPicture none = picture_with(effect_count, effect_count);
+  EXPECT_EQ(kernels_of(none), "camera_rays*1 trace_closest*1 shade_pixels*1");
+  std::vector<RecordedPicture> alone;
+  for (const std::size_t i : all) alone.push_back(picture_with(i, i));
+  for (const std::size_t i : all) {
+    EXPECT_TRUE(alone[i].device_bytes >= none.device_bytes) << EFFECT_NAMES[i];
+    for (std::size_t j = 0; j < i; ++j) {
+      const RecordedPicture both = picture_with(i, j);
+      EXPECT_GE(both.device_bytes, std::max(alone[i].device_bytes, alone[j].device_bytes))
+          << EFFECT_NAMES[i] << " and " << EFFECT_NAMES[j];
+    }
+  }
 }
 
 TEST(PathEffects, AreSaidInTheSceneFile) {

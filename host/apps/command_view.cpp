@@ -31,6 +31,12 @@ class ViewCommand : public Command {
         ->type_name("PREFIX")
         ->capture_default_str();
     add_view(app, picture_, scene_.up);
+    app.add_option("--spp", run_.refine.most_samples,
+                   "samples per pixel that a picture which stands still is refined to; 1: none")
+        ->check(CLI::Range(1u, 65536u))
+        ->capture_default_str();
+    add_error(app, run_.refine,
+              "or until its relative error, estimated from its samples, is no more than this");
     add_effects(app, scene_);
     add_lens(app, scene_);
     add_tone(app, picture_.trace.tone);

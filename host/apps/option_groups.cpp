@@ -57,6 +57,15 @@ std::optional<double> number_of(const std::string& text) {
   return error == std::errc() && last == end && std::isfinite(number) ? std::optional(number) : std::nullopt;
 }
 
+void add_limit(CLI::App& app, const char* name, double& value, double most, const std::string& help) {
+  app.add_option(name, value, help)->check([most](const std::string& text) {
+    const std::optional<double> number = number_of(text);
+    return number && *number > 0 && *number <= most
+               ? ""
+               : "'" + text + "' is no number above 0 and up to " + std::to_string(static_cast<int>(most));
+  });
+}
+
 }  // namespace
 
 std::string word_of_lookback(LookbackChoice lookback) { return word_of(lookback_words, lookback); }
@@ -179,19 +188,15 @@ void add_tone(CLI::App& app, ToneMapping& tone) {
       ->default_str("0");
 }
 
+void add_error(CLI::App& app, RefineLimits& refine, const std::string& help) {
+  add_limit(app, "--error", refine.error, 100, help);
+}
+
 void add_refine(CLI::App& app, RefineLimits& refine) {
-  const auto add = [&](const char* name, double& value, double most, const char* help) {
-    app.add_option(name, value, help)->check([most](const std::string& text) {
-      const std::optional<double> number = number_of(text);
-      return number && *number > 0 && *number <= most
-                 ? ""
-                 : "'" + text + "' is no number above 0 and up to " + std::to_string(static_cast<int>(most));
-    });
-  };
-  add("--seconds", refine.seconds, 86400,
-      "more and more samples, at most as many as --spp says, until so long was spent on tracing");
-  add("--error", refine.error, 100,
-      "the same until the picture's relative error, estimated from its samples, is no more than this");
+  add_limit(app, "--seconds", refine.seconds, 86400,
+            "more and more samples, at most as many as --spp says, until so long was spent on tracing");
+  add_error(app, refine,
+            "the same until the picture's relative error, estimated from its samples, is no more than this");
   app.add_flag("--adaptive", refine.adaptive,
                "of --error: after 16 samples only of pixels whose own error is larger");
 }

@@ -46,6 +46,7 @@ void add_view(CLI::App& app, PictureOptions& picture, std::string& up);     // s
 void add_picture(CLI::App& app, PictureOptions& picture, std::string& up);  // view and samples
 void add_tone(CLI::App& app, ToneMapping& tone);                            // and exposure
 void add_refine(CLI::App& app, RefineLimits& refine);
+void add_error(CLI::App& app, RefineLimits& refine, const std::string& help);
 void add_effects(CLI::App& app, SceneOptions& scene);
 void add_lens(CLI::App& app, SceneOptions& scene);
 void add_show(CLI::App& app, ShowOptions& show);

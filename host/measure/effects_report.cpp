@@ -46,13 +46,14 @@ Json names(const std::vector<RecordedPicture::Kernel>& kernels) {
   return list;
 }
 
-std::uint32_t dispatches(const std::vector<RecordedPicture::Kernel>& kernels) {
+}  // namespace
+
+std::uint32_t EffectCost::dispatches() const {
+  if (!state.on || shares_kernels()) return own_steps;
   std::uint32_t sum = 0;
   for (const RecordedPicture::Kernel& kernel : kernels) sum += kernel.dispatches;
   return sum;
 }
-
-}  // namespace
 
 std::string explain(const EffectSet& effects) {
   std::string text;
@@ -81,17 +82,17 @@ std::string text_of(const EffectsReport& report, const FrameRuns& frame) {
           format(" %10s %12s %10s %10s  %s\n", "dispatches", "rays", "MB", "ms", "called for by");
   for (const EffectCost& cost : report.costs) {
     const std::string ms = cost.ms ? format("%.1f", *cost.ms) : "?";
-    text +=
-        named(name_of(cost.effect), cost.state.on ? "on" : "off") +
-        format(" %10u %12llu %10.2f %10s  %s\n", cost.state.on ? dispatches(cost.kernels) : cost.own_steps,
-               static_cast<unsigned long long>(cost.rays), static_cast<double>(cost.bytes) * 1e-6, ms.c_str(),
-               why(cost.state).c_str());
+    text += named(name_of(cost.effect), cost.state.on ? "on" : "off") +
+            format(" %10u %12llu %10.2f %10s  %s\n", cost.dispatches(),
+                   static_cast<unsigned long long>(cost.rays), static_cast<double>(cost.bytes) * 1e-6,
+                   ms.c_str(), why(cost.state).c_str());
+    if (cost.shares_kernels()) text += "           shares its kernels with other effects\n";
     if (!cost.kernels.empty()) text += "           adds " + listed(cost.kernels) + "\n";
     if (!cost.instead_of.empty()) text += "           in the place of " + listed(cost.instead_of) + "\n";
   }
   return text +
          "\nEach that is on by the picture with it and once more without it; ms of the kernels that "
-         "differ.\n";
+         "differ, or of all where it shares its own.\n";
 }
 
 Json to_json(const EffectsReport& report, const FrameRuns& frame) {
@@ -99,7 +100,8 @@ Json to_json(const EffectsReport& report, const FrameRuns& frame) {
   for (const EffectCost& cost : report.costs) {
     Json one = state_json(cost.effect, cost.state);
     one["kernels"] = names(cost.kernels);
-    one["dispatches"] = cost.state.on ? dispatches(cost.kernels) : cost.own_steps;
+    one["dispatches"] = cost.dispatches();
+    one["shares_kernels"] = cost.shares_kernels();
     one["instead_of"] = names(cost.instead_of);
     one["rays"] = cost.rays;
     one["bytes"] = cost.bytes;

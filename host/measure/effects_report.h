@@ -33,7 +33,14 @@ struct EffectCost {
   std::uint32_t own_steps = 0;                        // recorded for it alone; 0 where it is off
   std::uint64_t rays = 0;
   std::int64_t bytes = 0;
-  std::optional<double> ms = 0;  // of the kernels that differ; empty on a device without timestamps
+  // Of the kernels that differ, or of all where none does; empty on a device without timestamps.
+  std::optional<double> ms = 0;
+
+  // Whether each of its steps is one that another effect, which is on, takes as well, as kinds of paths do.
+  bool shares_kernels() const {
+    return state.on && kernels.empty() && own_steps > 0 && effect != Effect::depth_of_field;
+  }
+  std::uint32_t dispatches() const;  // that it adds, or shares; those recorded for it where it is off
 };
 
 struct EffectsReport {

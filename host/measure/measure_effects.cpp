@@ -97,10 +97,18 @@ double ms_of(const KernelTable& table, const std::string& name) {
   return row == table.rows.end() ? 0 : row->ms;
 }
 
-// By the kernels of which one picture has more than the other, and the one that rays through a lens are of.
+double ms_of_all(const KernelTable& table) {
+  double ms = 0;
+  for (const KernelTime& row : table.rows) ms += row.ms;
+  return ms;
+}
+
+// By the kernels of which one picture has more than the other, and the one that rays through a lens are of;
+// by all of them where an effect shares each of its own with another.
 std::optional<double> ms_between(const EffectCost& cost, const KernelTable& with,
                                  const KernelTable& without) {
   if (with.untimed || without.untimed) return std::nullopt;
+  if (cost.shares_kernels()) return ms_of_all(with) - ms_of_all(without);
   double ms = 0;
   for (const std::vector<Kernel>* const kernels : {&cost.kernels, &cost.instead_of}) {
     for (const Kernel& kernel : *kernels) ms += ms_of(with, kernel.name) - ms_of(without, kernel.name);

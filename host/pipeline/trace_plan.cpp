@@ -227,6 +227,20 @@ TracePlan plan_trace(Layout& layout, const TreeSlots& tree, std::uint32_t materi
   return plan;
 }
 
+TracePlan plan_refined(Layout& layout, const TracePlan& plan) {
+  TracePlan refined = plan;
+  refined.options.keep_noise = true;
+  refined.options.resolves = false;
+  if (plan.rays.count == 0) {
+    refined.rays = layout.add<Ray>("refined_rays", plan.band_rays);
+    refined.hits = layout.add<Hit>("refined_hits", plan.band_rays);
+  }
+  const auto pixels = static_cast<std::uint32_t>(plan.image.count);
+  refined.radiance = layout.add<vec3>("refined_radiance", pixels);
+  refined.noise = plan_noise(layout, plan.band_rays, pixels, false);
+  return refined;
+}
+
 void append_resolve(Chain& chain, const TracePlan& plan, Vec3Buffer radiance, std::uint32_t first_pixel,
                     std::uint32_t count) {
   const ToneMapping tone = plan.options.show == SHOW_COLOR ? plan.options.tone : ToneMapping{};

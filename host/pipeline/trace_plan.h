@@ -124,6 +124,10 @@ const Slot<TraceCounters>& shadow_counters(const TracePlan& plan);
 TracePlan plan_trace(Layout& layout, const TreeSlots& tree, std::uint32_t material_count,
                      const TraceOptions& options);
 
+// The same picture, of colours, refined by and by: what it keeps beside what `plan` keeps. All else they
+// share, so that only one of them is traced at a time.
+TracePlan plan_refined(Layout& layout, const TracePlan& plan);
+
 // No hit yet for each of the first `ray_count` rays.
 void append_misses(Chain& chain, const RaySlots& slots, std::uint32_t ray_count);
 

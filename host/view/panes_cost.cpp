@@ -41,6 +41,8 @@ void Viewer::cost_pane() {
   ImGui::TextDisabled("%ux%u, %s", width_, height_, device_->properties().name.substr(0, 24).c_str());
   kernel_chart();
   ImGui::Separator();
+  if (const ViewedFrame& frame = statistics_.last; frame.samples > 1)
+    ImGui::Text("%u of %u samples, error %.4f", frame.samples, run_.refine.most_samples, frame.error);
   const TraceCounts& counts = statistics_.last.counts;
   if (counts.rays != 0)
     ImGui::Text("%.1f steps a ray, %.0f %% hit",

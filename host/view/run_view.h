@@ -6,6 +6,7 @@
 
 #include "measure/builder_choice.h"
 #include "measure/json.h"
+#include "measure/refine.h"
 #include "pipeline/checked_device.h"
 #include "pipeline/trace_plan.h"
 #include "render/show.h"
@@ -23,8 +24,9 @@ struct ViewRun {
   TraceOptions trace{};          // its size is the window's
   std::vector<double> camera{};  // see given_view; empty: the scene's
   ShowOptions show{};
-  bool paused = false;   // a moving scene stands still at first
-  bool rebuild = false;  // the tree is made anew for every frame
+  RefineLimits refine{.most_samples = 64};  // of pictures of colours that stand still
+  bool paused = false;                      // a moving scene stands still at first
+  bool rebuild = false;                     // the tree is made anew for every frame
   Update update = Update::rebuild;
   bool panes = true;         // they are shown
   std::uint32_t frames = 0;  // ends after so many, one step of the scene each; 0: when it is closed

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "analysis/quality.h"
+#include "measure/refine.h"
 #include "measure/show_frame.h"
 #include "pipeline/bounded_submits.h"
 #include "render/moving_tree.h"
@@ -27,7 +28,8 @@ std::string group_of(std::string_view stage) {
       {"scan_", "shadows"},       {"prefix_", "shadows"},
       {"shade_lights", "lights"}, {"texture_", "textures"},
       {"occlusion_", "ambient"},  {"shade_ambient", "ambient"},
-      {"path_", "paths"}};
+      {"path_", "paths"},         {"noise_", "refine"},
+      {"sample_", "refine"}};
   for (const auto& [prefix, name] : prefixes) {
     if (stage.starts_with(prefix)) return name;
   }
@@ -82,6 +84,12 @@ FramePlan ViewFrames::plan_all(ViewFrames& frames, CheckedDevice& device) {
   return plan;
 }
 
+std::optional<TracePlan> ViewFrames::plan_passes(ViewFrames& frames) {
+  const bool colours = frames.options_.show.show == Show::color;
+  if (!frames.options_.refines || !colours) return {};
+  return plan_refined(frames.layout_, frames.plan_.trace);
+}
+
 ViewFrames::ViewFrames(CheckedDevice& device, const OpenedScene& opened, const ViewOptions& options)
     : opened_(opened),
       options_(options),
@@ -89,6 +97,7 @@ ViewFrames::ViewFrames(CheckedDevice& device, const OpenedScene& opened, const V
       motion_(motion_of(opened.scene)),
       layout_(device.properties().max_block_bytes),
       plan_(plan_all(*this, device)),
+      refined_(plan_passes(*this)),
       executor_(device.device(), layout_),
       chooser_(options.update) {
   upload_scene();
@@ -98,7 +107,8 @@ ViewFrames::ViewFrames(CheckedDevice& device, const OpenedScene& opened, const V
 // The device has to be done with what it was given.
 ViewFrames::~ViewFrames() {
   if (!under_way_) return;
-  for (std::optional<Recorder>* const recorder : {&tree_recorder_, &refit_recorder_, &trace_recorder_}) {
+  for (std::optional<Recorder>* const recorder :
+       {&tree_recorder_, &refit_recorder_, &trace_recorder_, &pass_recorder_}) {
     try {
       if (*recorder) (*recorder)->wait(piece_limit_seconds);
     } catch (const DeviceError&) {
@@ -214,6 +224,7 @@ void ViewFrames::build_after_all() {
 
 void ViewFrames::submit(const Film& film, double seconds, bool rebuild) {
   under_way_ = UnderWay{.seconds = seconds};
+  passed_samples_ = 0;
   executor_.upload(plan_.trace.film, std::span<const Film>(&film, 1));
   upload_show(executor_, plan_.trace.show, options_.show.show, span(film));
   submit_tree(seconds, rebuild);
@@ -225,6 +236,51 @@ void ViewFrames::submit(const Film& film, double seconds, bool rebuild) {
   trace_recorder_->submit();
 }
 
+void ViewFrames::submit_pass(const Film& film, std::uint32_t samples) {
+  under_way_ = UnderWay{.seconds = *seconds_, .is_pass = true};
+  const std::uint32_t first = passed_samples_;
+  passed_samples_ += samples;
+  Film sequence = film;
+  sequence.is_sequence = 1;
+  sequence.samples = passed_samples_;
+  executor_.upload(refined_->film, std::span<const Film>(&sequence, 1));
+  Chain chain = executor_.chain();
+  TracePieces pieces = plan_.pieces(plan_of_pass(*refined_, first, passed_samples_));
+  while (!pieces.done()) pieces.append(chain, ~std::uint64_t{0});
+  if (passed_samples_ >= 2) append_noise_sum(chain, refined_->noise, passed_samples_);
+  append_resolved(chain, *refined_);
+  pass_groups_ = mark_groups(chain.steps());
+  pass_recorder_.emplace(executor_.record(chain.steps()));
+  pass_recorder_->submit();
+}
+
+void ViewFrames::check_errors() const {
+  std::uint32_t error_word = executor_.read(plan_.tree.state)[0].error_word;
+  if (plan_.levels) {
+    for (const BuildState& state : executor_.read(plan_.levels->plan.mesh_states))
+      error_word |= state.error_word;
+  }
+  if (const std::string errors = describe_error_word(error_word); !errors.empty())
+    throw DeviceError("the frame at second " + std::to_string(under_way_->seconds) + ": " + errors);
+}
+
+void ViewFrames::read_counts(ViewedFrame& frame) const {
+  const auto counted = [&](const Slot<TraceCounters>& counters) {
+    return counters.count > 0 ? counts_of(executor_.read(counters)[0]) : TraceCounts{};
+  };
+  frame.counts = counted(plan_.trace.counters);
+  frame.shadow = counted(shadow_counters(plan_.trace));
+  frame.occlusion = counted(plan_.trace.lights.occlusion_counters);
+  frame.bounced = counted(plan_.trace.paths.bounce_counters);
+}
+
+void ViewFrames::take_pass(ViewedFrame& frame) {
+  wait(*pass_recorder_, pass_groups_, frame);
+  frame.samples = passed_samples_;
+  if (frame.samples >= 2)
+    frame.error = picture_error(executor_.read(noise_sum_of(refined_->noise))[0], plan_.trace.image.count);
+}
+
 ViewedFrame ViewFrames::take() {
   ViewedFrame& frame = under_way_->frame;
   if (!wait_for_tree()) {
@@ -233,21 +289,13 @@ ViewedFrame ViewFrames::take() {
     trace_recorder_->submit();
   }
   const double update_ms = frame.device_ms;
-  wait(*trace_recorder_, trace_groups_, frame);
-  std::uint32_t error_word = executor_.read(plan_.tree.state)[0].error_word;
-  if (plan_.levels) {
-    for (const BuildState& state : executor_.read(plan_.levels->plan.mesh_states))
-      error_word |= state.error_word;
+  if (under_way_->is_pass) {
+    take_pass(frame);
+  } else {
+    wait(*trace_recorder_, trace_groups_, frame);
   }
-  if (const std::string errors = describe_error_word(error_word); !errors.empty())
-    throw DeviceError("the frame at second " + std::to_string(under_way_->seconds) + ": " + errors);
-  frame.counts = counts_of(executor_.read(plan_.trace.counters)[0]);
-  if (const auto& counters = shadow_counters(plan_.trace); counters.count > 0)
-    frame.shadow = counts_of(executor_.read(counters)[0]);
-  if (plan_.trace.lights.occlusion_counters.count > 0)
-    frame.occlusion = counts_of(executor_.read(plan_.trace.lights.occlusion_counters)[0]);
-  if (plan_.trace.paths.bounce_counters.count > 0)
-    frame.bounced = counts_of(executor_.read(plan_.trace.paths.bounce_counters)[0]);
+  check_errors();
+  read_counts(frame);
   if (frame.built || frame.refitted)
     chooser_.note({frame.built, under_way_->in_vain, update_ms, frame.device_ms - update_ms,
                    frame.counts.steps + frame.shadow.steps + frame.occlusion.steps + frame.bounced.steps});

@@ -22,6 +22,7 @@ struct ViewOptions {
   TraceOptions trace{};  // and of what size; the walk is chosen
   ShowOptions show{};
   Update update = Update::rebuild;  // of the tree, where triangles have moved
+  bool refines = false;             // passes are asked for
 };
 
 // Device time of kernels that belong together, in the order in which they run.
@@ -35,8 +36,10 @@ struct ViewedFrame {
   bool refitted = false;            // or only its boxes
   std::vector<KernelGroup> groups;  // empty on a device without timestamps
   double device_ms = 0;
-  TraceCounts counts;  // of the camera's rays
-  TraceCounts shadow;  // of shadow rays
+  std::uint32_t samples = 1;  // a pixel, of all passes so far
+  double error = 0;           // of 2 and more: estimated, see picture_error
+  TraceCounts counts;         // of the camera's rays; as those below of all passes so far
+  TraceCounts shadow;         // of shadow rays
   TraceCounts occlusion;
   TraceCounts bounced;  // of paths behind the camera's rays
   ShowSpan seen;        // of a view with a range
@@ -64,6 +67,12 @@ class ViewFrames {
   // where the time is another one, or if asked for; one of the host is made once, and its scene stands still.
   void submit(const Film& film, double seconds, bool rebuild);
   bool is_under_way() const { return under_way_.has_value(); }
+
+  // Another pass of so many samples a pixel over the scene as the last picture has it, of that picture's
+  // film. Passes begin anew after each such picture, and are of a sequence, so that however they are cut the
+  // picture is that of as many samples. Only where the options ask for passes and colours are shown.
+  void submit_pass(const Film& film, std::uint32_t samples);
+  bool can_refine() const { return refined_.has_value(); }
 
   // Waits for the one under way. Throws DeviceError where it did not come out.
   ViewedFrame take();
@@ -98,15 +107,20 @@ class ViewFrames {
   void build_after_all();
   static FramePlan plan_instances_of(ViewFrames& frames, FrameOptions options);
   static FramePlan plan_all(ViewFrames& frames, CheckedDevice& device);
+  static std::optional<TracePlan> plan_passes(ViewFrames& frames);
   void record();
   void upload_values();
+  void check_errors() const;
+  void read_counts(ViewedFrame& frame) const;
+  void take_pass(ViewedFrame& frame);
   static void wait(Recorder& recorder, const std::vector<std::string>& names, ViewedFrame& frame);
 
   struct UnderWay {
     double seconds = 0;
     bool has_tree = false;  // submitted, and not waited for
-    bool in_vain = false;   // it was refitted, and then had to be built
-    ViewedFrame frame{};    // as far as it is known
+    bool is_pass = false;
+    bool in_vain = false;  // it was refitted, and then had to be built
+    ViewedFrame frame{};   // as far as it is known
   };
 
   const OpenedScene& opened_;
@@ -120,14 +134,16 @@ class ViewFrames {
   InstancesTold instances_at_;
   std::optional<RefitPlan> refit_;  // as what stands above, planned with plan_
   FramePlan plan_;
+  std::optional<TracePlan> refined_;  // added to the layout behind it
   GpuExecutor executor_;
   UpdateChooser chooser_;
-  std::optional<Recorder> tree_recorder_, refit_recorder_, trace_recorder_;
+  std::optional<Recorder> tree_recorder_, refit_recorder_, trace_recorder_, pass_recorder_;
   // One a mark, and one for what is behind the last.
-  std::vector<std::string> tree_groups_, refit_groups_, trace_groups_;
+  std::vector<std::string> tree_groups_, refit_groups_, trace_groups_, pass_groups_;
   std::optional<double> seconds_;  // of the tree
   std::optional<UnderWay> under_way_;
-  bool values_old_ = true;  // what is shown of primitives
+  std::uint32_t passed_samples_ = 0;  // of the passes so far
+  bool values_old_ = true;            // what is shown of primitives
 };
 
 }  // namespace coppice

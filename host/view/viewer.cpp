@@ -88,10 +88,15 @@ bool Viewer::is_hidden() const {
   return size.width == 0 || size.height == 0;
 }
 
+// Whether each frame has another picture.
+bool Viewer::moves() const {
+  return frames_ && ((plays_ && frames_->can_move()) || asked_.rebuild || asked_.draws_always);
+}
+
 // Until something happens, where nothing goes on by itself.
 void Viewer::wait_for_events() {
-  const bool moves = frames_ && ((plays_ && frames_->can_move()) || asked_.rebuild || asked_.draws_always);
-  const bool still = frames_ && !moves && !picture_old_ && !typed_keys_.any_left();
+  const bool still =
+      frames_ && !moves() && !picture_old_ && !typed_keys_.any_left() && samples_of_next_pass() == 0;
   if (is_hidden()) {
     glfwWaitEventsTimeout(0.1);
   } else if (still || !frames_) {
@@ -194,10 +199,12 @@ void Viewer::take_scene() {
 
 void Viewer::submit_picture() {
   if (!frames_) return;
-  const bool moves = (plays_ && frames_->can_move()) || asked_.rebuild || asked_.draws_always;
   const Film film = film_at_time();
-  if (!moves && !picture_old_ && !request_.rebuild && seconds_ == drawn_seconds_) return;
   submit_time_ = ViewClock::now();
+  if (!moves() && !picture_old_ && !request_.rebuild && seconds_ == drawn_seconds_) {
+    if (const std::uint32_t samples = samples_of_next_pass()) frames_->submit_pass(film_, samples);
+    return;
+  }
   frames_->submit(film, seconds_, asked_.rebuild || request_.rebuild);
   request_.rebuild = false;
   film_ = film;
@@ -205,10 +212,34 @@ void Viewer::submit_picture() {
   picture_old_ = false;
 }
 
+// 0: none. As many as take about as long as a window may be late to answer, and at first two, of which one
+// knows how far they are apart.
+std::uint32_t Viewer::samples_of_next_pass() const {
+  constexpr double seconds_of_pass = 0.05;
+  if (!frames_ || !frames_->can_refine()) return 0;
+  const ViewedFrame& last = statistics_.last;
+  const RefineLimits& limits = run_.refine;
+  if (last.samples >= limits.most_samples || is_refined(last)) return 0;
+  const std::uint32_t done = last.samples > 1 ? last.samples : 0, left = limits.most_samples - done;
+  const double in_time = seconds_of_pass / std::max(seconds_a_sample_, 1e-6);
+  return std::min(left, std::max(static_cast<std::uint32_t>(in_time), done == 0 ? 2u : 1u));
+}
+
+bool Viewer::is_refined(const ViewedFrame& frame) const {
+  const RefineLimits& limits = run_.refine;
+  return limits.error > 0 && frame.samples >= REFINE_LEAST_SAMPLES && frame.error <= limits.error;
+}
+
 void Viewer::take_picture() {
   if (!frames_ || !frames_->is_under_way()) return;
+  const std::uint32_t before = statistics_.last.samples;
   const ViewedFrame frame = frames_->take();
-  note_frame(frame, seconds_between(submit_time_, ViewClock::now()) * 1000);
+  const double seconds = seconds_between(submit_time_, ViewClock::now());
+  seconds_a_sample_ =
+      seconds / (frame.samples > before && before > 1 ? frame.samples - before : frame.samples);
+  note_frame(frame, seconds * 1000);
+  if (frame.samples > 1 && samples_of_next_pass() == 0)
+    say(format("refined to %u samples, error %.3g", frame.samples, frame.error));
 }
 
 void Viewer::note_frame(const ViewedFrame& frame, double ms) {

@@ -89,6 +89,9 @@ class Viewer {
   bool wants_other_levels() const;
   void move_camera(double seconds);
   void move_time(double seconds);
+  bool moves() const;
+  std::uint32_t samples_of_next_pass() const;
+  bool is_refined(const ViewedFrame& frame) const;
   void submit_picture();
   void take_picture();
   Film film_at_time() const;
@@ -155,6 +158,7 @@ class Viewer {
   std::vector<int> pressed_;  // keys, since the last frame
   bool flies_ = false, plays_ = true, panes_ = true, help_ = false;
   double seconds_ = 0, drawn_seconds_ = 0;  // of the scene
+  double seconds_a_sample_ = 0;             // of the host's clock, the last picture or pass
   std::chrono::steady_clock::time_point last_turn_, last_description_, submit_time_;
   std::string typed_scene_, complaint_;
   ViewStatistics statistics_;

@@ -55,7 +55,9 @@ std::string Viewer::render_arguments() const {
   text += format(" --size %ux%u --builder %s --radius %u", width_, height_, asked_.builder.name.c_str(),
                  asked_.builder.radius);
   if (!asked_.walk.automatic()) text += " " + asked_.walk.said;
-  if (run_.trace.samples != 1) text += format(" --spp %u", run_.trace.samples);
+  // Samples of a sequence, as many as there are: a day is enough for them.
+  if (const std::uint32_t samples = statistics_.last.samples; samples > 1)
+    text += format(" --spp %u --seconds 86400", samples);
   if (!asked_.scene.effects.empty()) text += " --effects=" + asked_.scene.effects.text();
   if (show.show != Show::color) text += " --show " + std::string(name_of(show.show));
   if (show.show == Show::steps && show.most_steps) text += format(" --most-steps %u", show.most_steps);

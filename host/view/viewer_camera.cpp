@@ -88,9 +88,8 @@ std::vector<double> Viewer::camera_now() const {
 Film Viewer::film_at_time() const {
   const Scene& scene = opened_->scene;
   if (camera_numbers_.empty() && camera_moves())
-    return make_film(*pose_at(*scene.motion, seconds_).camera, scene.lens, width_, height_,
-                     run_.trace.samples);
-  return make_film(scene, camera_numbers_, width_, height_, run_.trace.samples);
+    return make_film(*pose_at(*scene.motion, seconds_).camera, scene.lens, width_, height_, 1);
+  return make_film(scene, camera_numbers_, width_, height_, 1);
 }
 
 double Viewer::frames_per_second() const {

@@ -94,6 +94,7 @@ void Viewer::make_frames(std::uint32_t width, std::uint32_t height) {
   frames_.reset();
   ViewOptions options{
       .builder = asked_.builder, .trace = run_.trace, .show = asked_.show, .update = asked_.update};
+  options.refines = run_.refine.most_samples > 1;
   options.trace.width = width;
   options.trace.height = height;
   device_->set_walk(asked_.walk);

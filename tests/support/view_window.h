@@ -46,6 +46,7 @@ class ViewWindow : public Command {
   bool open(const std::string& arguments, bool waits = true, std::vector<std::string> settings = {}) {
     for (const std::string& setting : desktop_->settings()) settings.push_back(setting);
     std::vector<std::string> words = {COPPICE_PROGRAM, "view", "--validate"};
+    if (arguments.find("--spp") == std::string::npos) words.insert(words.end(), {"--spp", "1"});
     std::istringstream stream(arguments);
     for (std::string word; stream >> word;) words.push_back(word);
     window_.emplace(words, "window", settings);
@@ -71,6 +72,10 @@ class ViewWindow : public Command {
   }
 
   bool shows(const std::string& text) const { return window_->out().find(text) != std::string::npos; }
+  bool shows_twice(const std::string& text) const {
+    const std::size_t first = window_->out().find(text);
+    return first != std::string::npos && window_->out().find(text, first + 1) != std::string::npos;
+  }
   void expect_line(const std::string& text) {
     EXPECT_TRUE(wait_until([&] { return shows(text) || window_->has_ended(); }));
     EXPECT_TRUE(shows(text)) << text << " is not in " << window_->out() << window_->err();
