@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "twins/bsdf.h"
+#include "twins/environment.h"
 #include "twins/leave_surface.h"
 #include "twins/light_source.h"
 #include "twins/paths.h"
@@ -64,6 +65,25 @@ std::optional<SampledLight> sample_emitter(const PathLightsArgs& args, const Lig
   return SampledLight{direction, 1, choice.emission / pdf, pdf};
 }
 
+std::optional<SampledLight> sample_environment_light(const PathLightsArgs& args, const Path& path,
+                                                     const glm::vec2& u) {
+  const EnvironmentSample met = sample_environment(
+      args.surroundings, u, sample_2d(path.seed, args.sample_index, PATH_PLACES_IN_TEXEL + args.bounce));
+  if (!(met.light.density > 0)) return std::nullopt;
+  return SampledLight{met.towards, std::numeric_limits<float>::infinity(),
+                      met.light.radiance / met.light.density, met.light.density};
+}
+
+std::optional<SampledLight> sample_choice(const PathLightsArgs& args, const LightChoice& choice,
+                                          const Path& path, const vec3& origin) {
+  const glm::vec2 u =
+      sample_2d(path.seed, args.sample_index, path_dimension(args.bounce, PATH_PLACES_LIGHT));
+  if (choice.source == LIGHT_CHOICE_ENVIRONMENT) return sample_environment_light(args, path, u);
+  if ((choice.source & LIGHT_CHOICE_LISTED) != 0)
+    return sample_listed(args.lights[choice.source & ~LIGHT_CHOICE_LISTED], origin, choice.probability);
+  return sample_emitter(args, choice, origin, u);
+}
+
 vec3 reflected_towards(const SurfacePoint& surface, const vec3& view, const SampledLight& light,
                        const BsdfSwitches& switches) {
   const BsdfTerms terms = bsdf_terms(surface, view, unit_vector(light.towards), switches);
@@ -86,12 +106,7 @@ void path_lights(const PathLightsArgs& args) {
     const vec3 origin = leave_surface(triangle, args.hits[i], normal_towards(triangle, direction));
     const LightChoice& choice = choice_for(
         args, sample_1d(path.seed, args.sample_index, path_dimension(args.bounce, PATH_PICKS_LIGHT)));
-    const auto light =
-        (choice.source & LIGHT_CHOICE_LISTED) != 0
-            ? sample_listed(args.lights[choice.source & ~LIGHT_CHOICE_LISTED], origin, choice.probability)
-            : sample_emitter(
-                  args, choice, origin,
-                  sample_2d(path.seed, args.sample_index, path_dimension(args.bounce, PATH_PLACES_LIGHT)));
+    const auto light = sample_choice(args, choice, path, origin);
     if (!light) continue;
     const vec3 colour =
         reflected_towards(args.surfaces[i], -unit_vector(direction), *light, switches_of(args.lobes)) *
