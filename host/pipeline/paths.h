@@ -12,14 +12,14 @@ namespace coppice {
 
 // What paths of light a picture follows.
 struct PathCounts {
-  bool follows = false;        // none: the camera's rays are shaded where they end
-  std::uint32_t bounces = 0;   // at most
-  std::uint32_t choices = 0;   // lights to choose from
-  std::uint32_t lights = 0;    // of those that are listed
-  bool emitters = false;       // triangles are among them
-  bool shadows = false;        // something may be in the way of some
-  std::uint32_t lobes = 0;     // PATH_LOBE_
-  bool bounces_light = false;  // ambient light is met by diffuse bounces alone
+  bool follows = false;                // none: the camera's rays are shaded where they end
+  std::uint32_t bounces = 0;           // at most
+  std::uint32_t choices = 0;           // lights to choose from
+  std::uint32_t lights = 0;            // of those that are listed
+  bool emitters = false;               // triangles are among them
+  bool shadows = false;                // something may be in the way of some
+  std::uint32_t lobes = 0;             // PATH_LOBE_
+  bool bounces_light = false;          // ambient light is met by diffuse bounces alone
   std::uint32_t environment_side = 0;  // of the map that rays meet which hit nothing; 0: there is none
 
   bool operator==(const PathCounts&) const = default;

@@ -104,9 +104,7 @@ double solid_angle(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c
                         la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb);
 }
 
-double luminance_of(const vec3& colour) {
-  return 0.2126 * colour.x + 0.7152 * colour.y + 0.0722 * colour.z;
-}
+double luminance_of(const vec3& colour) { return 0.2126 * colour.x + 0.7152 * colour.y + 0.0722 * colour.z; }
 
 }  // namespace
 
@@ -205,8 +203,7 @@ std::vector<uint> ends_of(std::span<const double> weights) {
       ++so_far;
     }
     const double part = std::min(until / all, 1.0);
-    ends[i] = i >= last ? ENVIRONMENT_RANGE
-                        : static_cast<uint>(part * (ENVIRONMENT_RANGE - count)) + so_far;
+    ends[i] = i >= last ? ENVIRONMENT_RANGE : static_cast<uint>(part * (ENVIRONMENT_RANGE - count)) + so_far;
   }
   return ends;
 }

@@ -25,7 +25,7 @@ EnvironmentMap environment_map(const Environment& environment, std::string& warn
 // of the image: what the mean of samples misses of that is made up for by a factor over all texels.
 EnvironmentMap environment_map(const RadianceImage& image, float rotation_degrees, float intensity);
 
-inline constexpr std::uint32_t SKY_SIDE = 256;
+inline constexpr std::uint32_t SKY_SIDE = 512;
 
 // As the stages take it: shares by luminance times solid angle, of what bilinear radiance there is in a
 // texel, so that whatever is not black is found. Without a map (side 0) ambient light alone.

@@ -157,8 +157,7 @@ void add_choices(const Scene& scene, const EffectSet& effects, std::span<const T
                  const EnvironmentMap& map, PathArrays& arrays) {
   const bool shadows = effects.has(Effect::shadows);
   const Weighed listed = listed_lights(scene, effects, arrays.lights);
-  const Weighed emitters =
-      effects.has(Effect::emission) ? emitters_of(scene, triangles, shadows) : Weighed{};
+  const Weighed emitters = effects.has(Effect::emission) ? emitters_of(scene, triangles, shadows) : Weighed{};
   const Weighed environment = environment_of(map, shadows);
   const Weighed* const kinds[] = {&listed, &emitters, &environment};
   share_out(kinds, arrays.choices);

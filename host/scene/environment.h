@@ -54,7 +54,8 @@ class SkyModel {
  public:
   explicit SkyModel(const Sky& sky);
 
-  // From a direction of unit length. Below the horizon is the ground, evenly lit by the sky.
+  // From a direction of unit length. Below the horizon the sky goes over, within 3.5 degrees, into the
+  // ground, which is evenly lit by it.
   glm::dvec3 radiance(const glm::dvec3& direction) const;
 
  private:

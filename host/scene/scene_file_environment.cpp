@@ -20,8 +20,7 @@ Sky read_sky(const json& from, const std::string& name, const Scene& scene) {
   sky.ground = from.value("ground", sky.ground);
   if (!from.contains("sun_direction")) return sky;
   const std::string pointer = "/environment/sky/sun_direction";
-  const glm::dvec3 sun =
-      direction_to_scene(scene, direction_of(from["sun_direction"], name, pointer));
+  const glm::dvec3 sun = direction_to_scene(scene, direction_of(from["sun_direction"], name, pointer));
   if (sun.y < least_height)
     fail_at(name, pointer,
             shortened(from["sun_direction"]) + ", expected a direction that is not below the horizon");

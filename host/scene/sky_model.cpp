@@ -11,6 +11,7 @@ namespace coppice {
 namespace {
 
 constexpr double least_cosine = 1e-4;  // of what is seen at the horizon
+constexpr double haze = 0.06;          // down to this height below it the sky goes over into the ground
 
 // Preetham et al. 1999, appendix A.2: each coefficient is slope * turbidity + offset.
 using Lines = std::array<std::array<double, 2>, 5>;
@@ -98,7 +99,9 @@ glm::dvec3 SkyModel::above(const glm::dvec3& direction) const {
 }
 
 glm::dvec3 SkyModel::radiance(const glm::dvec3& direction) const {
-  return direction.y < 0 ? ground_ : above(direction);
+  if (direction.y <= -haze) return ground_;
+  const double part = glm::smoothstep(0.0, haze, -direction.y);
+  return glm::mix(above(direction), ground_, part);
 }
 
 }  // namespace coppice

@@ -34,9 +34,9 @@ class Map {
   float pick(uint first, float u, float within, uint& index) const {
     const auto number = static_cast<uint>(u * static_cast<float>(ENVIRONMENT_RANGE));
     const Surrounding* const begin = &at_[first];
-    index = static_cast<uint>(
-        std::partition_point(begin, begin + side_ - 1, [&](const Surrounding& s) { return s.end <= number; }) -
-        begin);
+    index = static_cast<uint>(std::partition_point(begin, begin + side_ - 1,
+                                                   [&](const Surrounding& s) { return s.end <= number; }) -
+                              begin);
     const uint from = start(first, index);
     return static_cast<float>(index) +
            (static_cast<float>(number - from) + within) / static_cast<float>(end(first, index) - from);

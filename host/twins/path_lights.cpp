@@ -76,8 +76,7 @@ std::optional<SampledLight> sample_environment_light(const PathLightsArgs& args,
 
 std::optional<SampledLight> sample_choice(const PathLightsArgs& args, const LightChoice& choice,
                                           const Path& path, const vec3& origin) {
-  const glm::vec2 u =
-      sample_2d(path.seed, args.sample_index, path_dimension(args.bounce, PATH_PLACES_LIGHT));
+  const glm::vec2 u = sample_2d(path.seed, args.sample_index, path_dimension(args.bounce, PATH_PLACES_LIGHT));
   if (choice.source == LIGHT_CHOICE_ENVIRONMENT) return sample_environment_light(args, path, u);
   if ((choice.source & LIGHT_CHOICE_LISTED) != 0)
     return sample_listed(args.lights[choice.source & ~LIGHT_CHOICE_LISTED], origin, choice.probability);
