@@ -89,7 +89,7 @@ vec3 reflected(SurfacePoint surface, vec3 view, LightSample light) {
   BsdfTerms terms = bsdf_terms(surface, view, unit(light.towards));
   vec3 both = bsdf_sampled(terms);
   precise vec3 all = terms.diffuse + terms.glossy;
-  if (light.pdf == 0.0) return all;
+  if (light.pdf == 0.0 || (args.lobes & PATH_LAST_BOUNCE) != 0u) return all;
   precise float ratio = terms.pdf / light.pdf;
   precise vec3 shared_out = (all - both) + both * power_weight(ratio);
   return shared_out;

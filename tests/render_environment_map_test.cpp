@@ -39,15 +39,17 @@ glm::dvec3 direction_at(int i, int count) {
 
 TEST(EnvironmentMap, TexelsCoverTheSphereAndEachItsPart) {
   for (const std::uint32_t side : {16u, 64u}) {
+    const TexelSolidAngles solid_angles(side);
     double all = 0;
     for (std::uint32_t y = 0; y < side; ++y) {
-      for (std::uint32_t x = 0; x < side; ++x) all += texel_solid_angle(side, x, y);
+      for (std::uint32_t x = 0; x < side; ++x) all += solid_angles.at(x, y);
     }
     EXPECT_NEAR(all, 4 * pi, 1e-10);
   }
   // By the formula of the density: |p|^-3 for each unit of area, of the middle of small texels.
-  EXPECT_NEAR(texel_solid_angle(1024, 512, 512) / (4.0 / 1024 / 1024), 1, 0.01);
-  EXPECT_NEAR(texel_solid_angle(1024, 256, 255) / (4.0 / 1024 / 1024), std::pow(0.5, -1.5), 0.02);
+  const TexelSolidAngles small(1024);
+  EXPECT_NEAR(small.at(512, 512) / (4.0 / 1024 / 1024), 1, 0.01);
+  EXPECT_NEAR(small.at(256, 255) / (4.0 / 1024 / 1024), std::pow(0.5, -1.5), 0.02);
 }
 
 TEST(EnvironmentMap, ShowsEachDirectionWhatTheImageHasThere) {
@@ -105,10 +107,11 @@ TEST(EnvironmentMap, HasThePowerOfTheImage) {
     for (glm::vec3& pixel : image.pixels)
       pixel = vec3(random.uniform() < 0.01f ? 100 : 1, random.uniform(), 0);
     const EnvironmentMap map = environment_map(image, 30, 1);
+    const TexelSolidAngles solid_angles(map.side);
     glm::dvec3 power(0), wanted(0);
     for (std::uint32_t y = 0; y < map.side; ++y) {
       for (std::uint32_t x = 0; x < map.side; ++x)
-        power += glm::dvec3(map.radiance[std::size_t{map.side} * y + x]) * texel_solid_angle(map.side, x, y);
+        power += glm::dvec3(map.radiance[std::size_t{map.side} * y + x]) * solid_angles.at(x, y);
     }
     for (std::uint32_t y = 0; y < height; ++y) {
       const double zone = std::cos(pi * y / height) - std::cos(pi * (y + 1) / height);

@@ -73,13 +73,14 @@ class PathChain {
 
   void append_lights(const PathQueue& queue) {
     const PathBsdfConstants sampled = lobes();
-    chain_.run(stages::path_lights,
-               {camera_.triangles, address_or_null(chain_, slots_.lights), chain_.at(slots_.choices),
-                queue.rays, queue.hits, chain_.at(slots_.paths), chain_.at(slots_.surfaces),
-                chain_.at(slots_.surroundings), chain_.at(slots_.marked_rays),
-                chain_.at(slots_.light_radiance), marks_, camera_.radiance, chain_.at(slots_.queue_count),
-                camera_.count, counts_.choices, camera_.sample_index, bounce_, counts_.lobes, 0},
-               groups(), {sampled.diffuse_lobe, sampled.reflects, sampled.transmits, has_environment()});
+    chain_.run(
+        stages::path_lights,
+        {camera_.triangles, address_or_null(chain_, slots_.lights), chain_.at(slots_.choices), queue.rays,
+         queue.hits, chain_.at(slots_.paths), chain_.at(slots_.surfaces), chain_.at(slots_.surroundings),
+         chain_.at(slots_.marked_rays), chain_.at(slots_.light_radiance), marks_, camera_.radiance,
+         chain_.at(slots_.queue_count), camera_.count, counts_.choices, camera_.sample_index, bounce_,
+         counts_.lobes | (bounce_ == counts_.bounces ? PATH_LAST_BOUNCE : 0), 0},
+        groups(), {sampled.diffuse_lobe, sampled.reflects, sampled.transmits, has_environment()});
     if (!counts_.shadows) return;
     append_queue({}, {}, chain_.at(slots_.light_rays), {}, chain_.at(slots_.light_count));
     AnyHitSlots rays{slots_.light_rays, slots_.any_hits, slots_.light_counters, {}};

@@ -108,12 +108,16 @@ double luminance_of(const vec3& colour) { return 0.2126 * colour.x + 0.7152 * co
 
 }  // namespace
 
-double texel_solid_angle(std::uint32_t side, std::uint32_t x, std::uint32_t y) {
-  const glm::dvec3 a = octahedron_place(x, y, side), b = octahedron_place(x + 1.0, y, side),
-                   c = octahedron_place(x, y + 1.0, side), d = octahedron_place(x + 1.0, y + 1.0, side);
-  // Along the fold of this quarter of the square, which passes through corners of texels.
-  const bool rises = (x < side / 2) == (y < side / 2);
-  return rises ? solid_angle(a, b, c) + solid_angle(b, d, c) : solid_angle(a, b, d) + solid_angle(a, d, c);
+TexelSolidAngles::TexelSolidAngles(std::uint32_t side)
+    : half_(side / 2), quarter_(std::size_t{half_} * half_) {
+  tbb::parallel_for(std::uint32_t{0}, half_, [&](std::uint32_t y) {
+    for (std::uint32_t x = 0; x < half_; ++x) {
+      const glm::dvec3 a = octahedron_place(x, y, side), b = octahedron_place(x + 1.0, y, side),
+                       c = octahedron_place(x, y + 1.0, side), d = octahedron_place(x + 1.0, y + 1.0, side);
+      // Along the fold, which passes through corners of texels.
+      quarter_[std::size_t{half_} * y + x] = solid_angle(a, b, c) + solid_angle(b, d, c);
+    }
+  });
 }
 
 EnvironmentMap environment_map(const RadianceImage& image, float rotation_degrees, float intensity) {
@@ -124,10 +128,11 @@ EnvironmentMap environment_map(const RadianceImage& image, float rotation_degree
   const int points = std::max(2, static_cast<int>(std::ceil(2 * a_side / side)));
   const Equirectangular radiance(image, rotation_degrees);
   const std::vector<glm::dvec3> means = means_over_texels(side, points, radiance);
+  const TexelSolidAngles solid_angles(side);
   glm::dvec3 power(0);
   for (std::uint32_t y = 0; y < side; ++y) {
     for (std::uint32_t x = 0; x < side; ++x)
-      power += means[std::size_t{side} * y + x] * texel_solid_angle(side, x, y);
+      power += means[std::size_t{side} * y + x] * solid_angles.at(x, y);
   }
   glm::dvec3 factor(intensity);
   const glm::dvec3 wanted = radiance.power();
@@ -216,12 +221,13 @@ std::vector<Surrounding> surroundings(vec3 ambient, const EnvironmentMap& map, f
   const std::size_t side = map.side;
   all.resize(1 + side * (side + 1));
   const Luminances luminances(map);
+  const TexelSolidAngles solid_angles(map.side);
   std::vector<double> row_weights(side);
   tbb::parallel_for(std::size_t{0}, side, [&](std::size_t y) {
     std::vector<double> weights(side);
     for (std::size_t x = 0; x < side; ++x) {
       weights[x] = luminances.mean_over(static_cast<int>(x), static_cast<int>(y)) *
-                   texel_solid_angle(map.side, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
+                   solid_angles.at(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
       row_weights[y] += weights[x];
     }
     const std::vector<uint> ends = ends_of(weights);

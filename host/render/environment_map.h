@@ -35,7 +35,18 @@ std::vector<Surrounding> surroundings(vec3 ambient, const EnvironmentMap& map, f
 // Whether there is light in it.
 bool is_bright(const EnvironmentMap& map);
 
-// Of a texel, exactly: by the two triangles that a diagonal cuts it into.
-double texel_solid_angle(std::uint32_t side, std::uint32_t x, std::uint32_t y);
+// Of each texel, exactly: by the two triangles that a diagonal cuts it into.
+class TexelSolidAngles {
+ public:
+  explicit TexelSolidAngles(std::uint32_t side);
+  double at(std::uint32_t x, std::uint32_t y) const {
+    const auto mirrored = [&](std::uint32_t i) { return i < half_ ? i : 2 * half_ - 1 - i; };
+    return quarter_[std::size_t{half_} * mirrored(y) + mirrored(x)];
+  }
+
+ private:
+  std::uint32_t half_;
+  std::vector<double> quarter_;  // of the square, whose other quarters are the same mirrored
+};
 
 }  // namespace coppice

@@ -83,11 +83,11 @@ std::optional<SampledLight> sample_choice(const PathLightsArgs& args, const Ligh
   return sample_emitter(args, choice, origin, u);
 }
 
-vec3 reflected_towards(const SurfacePoint& surface, const vec3& view, const SampledLight& light,
-                       const BsdfSwitches& switches) {
+vec3 reflected_towards(const SurfacePoint& surface, const vec3& view, const SampledLight& light, uint lobes) {
+  const BsdfSwitches switches = switches_of(lobes);
   const BsdfTerms terms = bsdf_terms(surface, view, unit_vector(light.towards), switches);
   const vec3 all = terms.diffuse + terms.glossy;
-  if (light.pdf == 0) return all;
+  if (light.pdf == 0 || (lobes & PATH_LAST_BOUNCE) != 0) return all;
   const vec3 both = bsdf_sampled(terms, switches);
   return (all - both) + both * power_weight(terms.pdf / light.pdf);
 }
@@ -108,8 +108,7 @@ void path_lights(const PathLightsArgs& args) {
     const auto light = sample_choice(args, choice, path, origin);
     if (!light) continue;
     const vec3 colour =
-        reflected_towards(args.surfaces[i], -unit_vector(direction), *light, switches_of(args.lobes)) *
-        light->radiance;
+        reflected_towards(args.surfaces[i], -unit_vector(direction), *light, args.lobes) * light->radiance;
     if (!(std::fmax(std::fmax(colour.x, colour.y), colour.z) > 0)) continue;
     if (choice.shadows == 0) {
       args.radiance[path.pixel] += path.throughput * colour;

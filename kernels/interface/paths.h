@@ -165,7 +165,7 @@ struct PathLightsArgs {
   uint choice_count;  // positive
   uint sample_index;
   uint bounce;
-  uint lobes;  // PATH_LOBE_
+  uint lobes;  // PATH_LOBE_, PATH_LAST_BOUNCE
   uint padding;
 };
 
@@ -233,6 +233,7 @@ struct PathQueueArgs {
 const uint PATH_LOBE_DIFFUSE = 1u;
 const uint PATH_LOBE_REFLECTS = 2u;
 const uint PATH_LOBE_TRANSMITS = 4u;
+const uint PATH_LAST_BOUNCE = 8u;  // no path goes on to meet what lights are sampled: they count in full
 
 // Where numbers of sample_2d come from: a dimension each use and bounce.
 const uint PATH_DIMENSIONS = 5u;  // of a bounce
