@@ -13,8 +13,10 @@ layout(push_constant, scalar) uniform Push { PathLightsArgs args; };
 layout(constant_id = 0) const uint BSDF_DIFFUSE_LOBE = 1u;
 layout(constant_id = 1) const uint BSDF_REFLECTS = 1u;
 layout(constant_id = 2) const uint BSDF_TRANSMITS = 1u;
+layout(constant_id = 3) const uint HAS_ENVIRONMENT = 1u;
 
 #include "lib/bsdf.glsl"
+#include "lib/environment.glsl"
 
 struct LightSample {
   vec3 towards;  // from the surface; not of unit length
@@ -75,15 +77,31 @@ LightSample emitter_light(LightChoice choice, vec3 origin, vec2 u) {
   return LightSample(direction, 1.0, radiance, pdf);
 }
 
+LightSample environment_light(vec2 u, vec2 in_texel) {
+  EnvironmentSample met = sampled_environment(args.surroundings, u, in_texel);
+  if (!(met.density > 0.0)) return LightSample(met.towards, 1.0, vec3(0.0), 0.0);
+  precise vec3 radiance = met.radiance / met.density;
+  return LightSample(met.towards, uintBitsToFloat(0x7f800000u), radiance, met.density);
+}
+
 // BSDF and cosine, of what paths could meet as well its share.
 vec3 reflected(SurfacePoint surface, vec3 view, LightSample light) {
   BsdfTerms terms = bsdf_terms(surface, view, unit(light.towards));
   vec3 both = bsdf_sampled(terms);
   precise vec3 all = terms.diffuse + terms.glossy;
-  if (light.pdf == 0.0) return all;
+  if (light.pdf == 0.0 || (args.lobes & PATH_LAST_BOUNCE) != 0u) return all;
   precise float ratio = terms.pdf / light.pdf;
   precise vec3 shared_out = (all - both) + both * power_weight(ratio);
   return shared_out;
+}
+
+LightSample light_of(LightChoice choice, Path path, vec3 origin) {
+  vec2 u = sample_2d(path.seed, args.sample_index, path_dimension(args.bounce, PATH_PLACES_LIGHT));
+  if (HAS_ENVIRONMENT != 0u && choice.source == LIGHT_CHOICE_ENVIRONMENT)
+    return environment_light(u, sample_2d(path.seed, args.sample_index, PATH_PLACES_IN_TEXEL + args.bounce));
+  if ((choice.source & LIGHT_CHOICE_LISTED) != 0u)
+    return listed_light(args.lights.at[choice.source & ~LIGHT_CHOICE_LISTED], origin, choice.probability);
+  return emitter_light(choice, origin, u);
 }
 
 void main() {
@@ -100,13 +118,7 @@ void main() {
   vec3 origin = offset_origin(triangle, hit.u, hit.v, normal_towards(triangle, direction));
   LightChoice choice =
       chosen_light(sample_1d(path.seed, args.sample_index, path_dimension(args.bounce, PATH_PICKS_LIGHT)));
-  LightSample light;
-  if ((choice.source & LIGHT_CHOICE_LISTED) != 0u) {
-    light = listed_light(args.lights.at[choice.source & ~LIGHT_CHOICE_LISTED], origin, choice.probability);
-  } else {
-    vec2 u = sample_2d(path.seed, args.sample_index, path_dimension(args.bounce, PATH_PLACES_LIGHT));
-    light = emitter_light(choice, origin, u);
-  }
+  LightSample light = light_of(choice, path, origin);
   precise vec3 colour = reflected(surface, -unit(direction), light) * light.radiance;
   if (!(max(max(colour.x, colour.y), colour.z) > 0.0)) return;
   if (choice.shadows == 0u) {

@@ -7,9 +7,25 @@
 
 layout(local_size_x = PATH_GROUP) in;
 layout(push_constant, scalar) uniform Push { PathSurfacesArgs args; };
-layout(constant_id = 0) const uint PATH_BOUNCES_LIGHT = 1u;
+layout(constant_id = 0) const uint BOUNCES_LIGHT = 1u;
+layout(constant_id = 1) const uint HAS_ENVIRONMENT = 1u;
 
+#include "lib/environment.glsl"
 #include "lib/material_of.glsl"
+
+// Of a ray that hits nothing.
+vec3 surroundings(Path path, vec3 direction) {
+  if (HAS_ENVIRONMENT != 0u) {
+    float density;
+    vec3 radiance = met_environment(args.surroundings, direction, density);
+    if (path.pdf == 0.0) return radiance;
+    precise float ratio = density / path.pdf;
+    precise vec3 own_share = radiance * power_weight(ratio);
+    return own_share;
+  }
+  bool ambient = (path.flags & PATH_SEES_AMBIENT) != 0u;
+  return ambient ? args.surroundings.at[0].radiance : sky(direction, args.lighting.at[0]);
+}
 
 // That a light sample would have had this direction, by the density that the path's has.
 float emission_weight(Path path, Hit hit, Triangle triangle, float cosine) {
@@ -35,9 +51,7 @@ void main() {
   Ray ray = load_ray(args.rays, i);
   Hit hit = load_hit(args.hits, i);
   if (hit.triangle == NO_TRIANGLE) {
-    bool ambient = (path.flags & PATH_SEES_AMBIENT) != 0u;
-    vec3 colour = ambient ? args.ambient.at[0] : sky(ray.direction, args.lighting.at[0]);
-    add_radiance(args.radiance, path.pixel, path.throughput, colour);
+    add_radiance(args.radiance, path.pixel, path.throughput, surroundings(path, ray.direction));
     return;
   }
   Triangle triangle = args.triangles.at[hit.triangle];
@@ -48,8 +62,8 @@ void main() {
   PathMaterial material = args.path_materials.at[args.path_index.at[hit.triangle]];
   SurfacePoint surface = surface_point(colours.diffuse, material, enters ? normal : -normal, enters);
   precise vec3 seen = colours.ambient * emission_weight(path, hit, triangle, abs(cosine));
-  if (PATH_BOUNCES_LIGHT == 0u) {
-    precise vec3 reflected = surface.diffuse * (1.0 - surface.transmission) * args.ambient.at[0];
+  if (BOUNCES_LIGHT == 0u && HAS_ENVIRONMENT == 0u) {
+    precise vec3 reflected = surface.diffuse * (1.0 - surface.transmission) * args.surroundings.at[0].radiance;
     seen += reflected;
   }
   add_radiance(args.radiance, path.pixel, path.throughput, seen);

@@ -142,6 +142,18 @@ TEST_F(DevicePaths, ASquareLightIsAsBrightAsTheClosedFormAndHalfCoveredHalfAsBri
   }
 }
 
+// Where no path goes on to meet a lamp, what is sampled of it is not shared with what would have been met.
+TEST_F(DevicePaths, LightSamplesOfTheLastBounceCountInFull) {
+  Scene scene = square_light_over_plane(false);
+  scene.global_illumination = true;
+  for (const std::uint32_t bounces : {0u, 1u}) {
+    scene.bounces = bounces;
+    const PathPicture lit = path_picture(scene, {.width = 4, .height = 4, .samples = 1024});
+    const double open = 0.8 / std::numbers::pi * irradiance_under_square(1, 2) * 3;
+    EXPECT_NEAR(mean_radiance_of(lit.radiance).x, open, 0.01 * open) << bounces;
+  }
+}
+
 // What an angle of incidence makes of unpolarised light (Fresnel 1823).
 double fresnel(double cosine, double ior) {
   const double inner = std::sqrt(1 - (1 - cosine * cosine) / (ior * ior));

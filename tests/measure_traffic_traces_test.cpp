@@ -123,6 +123,29 @@ TEST(Traffic, OfTextures) {
   EXPECT_EQ(bytes, 1000u * 4 + 250 * 276);
 }
 
+// 1,000 rays, of which 250 hit something; an environment is met by the others.
+TEST(Traffic, OfEnvironments) {
+  const auto bytes_of = [](std::uint32_t side) {
+    Layout layout;
+    const TreeSlots tree = plan_tree(layout, 100, 199);
+    const TracePlan plan = plan_trace(
+        layout, tree, 1,
+        {.width = 40, .height = 25, .paths = {.follows = true, .choices = 1, .environment_side = side}});
+    Chain chain(nowhere);
+    append_trace(chain, tree, plan);
+    RunCounts counts;
+    counts.rays = 1000, counts.hits = 250, counts.steps = 4000;
+    std::uint64_t bytes = 0;
+    for (const Step& step : chain.steps()) {
+      if (stage_of(step) && stage_of(step)->name == std::string_view("path_surfaces"))
+        bytes += modelled_bytes(step, counts);
+    }
+    return bytes;
+  };
+  EXPECT_EQ(bytes_of(0), 1000u * 84 + 250 * 164);
+  EXPECT_EQ(bytes_of(16), 1000u * 84 + 250 * 164 + 750 * 112);
+}
+
 // The same as without, and of each hit the word of its triangle.
 TEST(Traffic, OfAlpha) {
   const auto bytes_of = [](AlphaCounts alpha, std::uint32_t shadows, Walk walk) {

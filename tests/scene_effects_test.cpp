@@ -132,7 +132,7 @@ TEST(Effects, ChangesThatNobodyKnowsAreNamed) {
   };
   const std::string all =
       " is no + or - and an effect behind it: there are lights, shadows, textures, "
-      "depth_of_field, ambient_occlusion, emission, reflection, refraction, global_illumination, alpha";
+      "depth_of_field, ambient_occlusion, emission, reflection, refraction, global_illumination, alpha, environment";
   EXPECT_EQ(error_of("+fog"), "'+fog'" + all);
   EXPECT_EQ(error_of("shadows"), "'shadows'" + all);
   EXPECT_EQ(error_of("+"), "'+'" + all);

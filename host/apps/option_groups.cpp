@@ -212,6 +212,9 @@ void add_effects(CLI::App& app, SceneOptions& scene) {
   app.add_option_function<std::string>(
          "--effects", set, "effects that the picture has or has not, whatever the scene calls for")
       ->type_name("+E,-E,...");
+  app.add_option("--environment", scene.environment,
+                 "light from everywhere: an equirectangular HDR image (.hdr, .exr), or sky for a clear one")
+      ->type_name("FILE|sky");
   app.add_option("--bounces", scene.bounces,
                  "of paths of light, where the picture has any; default what the scene says, or 4")
       ->check(CLI::Range(0u, MAX_BOUNCES));

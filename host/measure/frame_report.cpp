@@ -13,10 +13,13 @@ namespace coppice {
 
 namespace {
 
-// What every picture has, and the effects that are on.
+// What every picture has unless effects take its place, and those that are on.
 Json names_of_effects(const Scene& scene, const EffectSet& set) {
-  Json effects = Json::array({"ambient"});
-  if (scene.light.radiance != vec3(0)) effects.push_back("directional_light");
+  const bool surrounded = set.is_used(Effect::environment);
+  const bool replaced = scene.light_origin.empty() && (surrounded || set.is_used(Effect::emission));
+  Json effects = Json::array();
+  if (!surrounded) effects.push_back("ambient");
+  if (scene.light.radiance != vec3(0) && !replaced) effects.push_back("directional_light");
   for (std::size_t i = 0; i < effect_count; ++i) {
     if (set.has(static_cast<Effect>(i))) effects.push_back(EFFECT_NAMES[i]);
   }

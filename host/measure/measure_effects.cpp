@@ -32,7 +32,8 @@ std::uint64_t rays_of(const FrameReport& report, Effect effect) {
   if (effect == Effect::refraction) return report.lobes.transmitted;
   if (effect == Effect::global_illumination) return report.lobes.diffuse;
   if (effect == Effect::ambient_occlusion) return report.occlusion.rays;
-  const bool lights = effect == Effect::lights || effect == Effect::shadows || effect == Effect::emission;
+  const bool lights = effect == Effect::lights || effect == Effect::shadows || effect == Effect::emission ||
+                      effect == Effect::environment;
   return lights ? report.shadow.rays : 0;
 }
 
@@ -44,7 +45,8 @@ bool belongs_to(const Step& step, Effect effect, const Sharing& sharing) {
   }
   if (effect == Effect::textures) return stage_of(step) == &stages::texture_hits;
   if (const PathSurfacesArgs* const surfaces = args_of(step, stages::path_surfaces))
-    return effect == Effect::emission && surfaces->emitter_probability.value != 0;
+    return (effect == Effect::emission && surfaces->emitter_probability.value != 0) ||
+           (effect == Effect::environment && (surfaces->flags & PATH_HAS_ENVIRONMENT) != 0);
   if (const PathBounceArgs* const bounce = args_of(step, stages::path_bounce))
     return (bounce->lobes & lobe_of(effect)) != 0;
   const ShadeLightsArgs* const shading = args_of(step, stages::shade_lights);

@@ -46,6 +46,7 @@ class PathChain {
 
  private:
   uvec3 groups() const { return groups_of(camera_.count, PATH_GROUP); }
+  bool has_environment() const { return counts_.environment_side > 0; }
   PathBsdfConstants lobes() const {
     const auto has = [&](uint lobe) { return (counts_.lobes & lobe) != 0 ? 1u : 0u; };
     return {has(PATH_LOBE_DIFFUSE), has(PATH_LOBE_REFLECTS), has(PATH_LOBE_TRANSMITS)};
@@ -59,24 +60,27 @@ class PathChain {
       append_textures(chain_, textures_,
                       {camera_.film, camera_.triangles, camera_.path_index, queue.rays, queue.hits,
                        hit_materials, chain_.at(slots_.queue_count), camera_.count});
-    chain_.run(stages::path_surfaces,
-               {camera_.triangles, textured ? UintBuffer{} : camera_.path_index,
-                textured ? hit_materials : chain_.at(slots_.materials), camera_.path_index,
-                chain_.at(slots_.path_materials), address_or_null(chain_, slots_.emitter_probability),
-                camera_.lighting, queue.rays, queue.hits, chain_.at(slots_.paths), chain_.at(slots_.surfaces),
-                camera_.radiance, chain_.at(slots_.queue_count), chain_.at(slots_.ambient), camera_.count,
-                counts_.bounces_light},
-               groups(), {counts_.bounces_light});
+    chain_.run(
+        stages::path_surfaces,
+        {camera_.triangles, textured ? UintBuffer{} : camera_.path_index,
+         textured ? hit_materials : chain_.at(slots_.materials), camera_.path_index,
+         chain_.at(slots_.path_materials), address_or_null(chain_, slots_.emitter_probability),
+         camera_.lighting, queue.rays, queue.hits, chain_.at(slots_.paths), chain_.at(slots_.surfaces),
+         camera_.radiance, chain_.at(slots_.queue_count), chain_.at(slots_.surroundings), camera_.count,
+         (counts_.bounces_light ? PATH_BOUNCES_LIGHT : 0) | (has_environment() ? PATH_HAS_ENVIRONMENT : 0)},
+        groups(), {counts_.bounces_light, has_environment()});
   }
 
   void append_lights(const PathQueue& queue) {
+    const PathBsdfConstants sampled = lobes();
     chain_.run(
         stages::path_lights,
         {camera_.triangles, address_or_null(chain_, slots_.lights), chain_.at(slots_.choices), queue.rays,
-         queue.hits, chain_.at(slots_.paths), chain_.at(slots_.surfaces), chain_.at(slots_.marked_rays),
-         chain_.at(slots_.light_radiance), marks_, camera_.radiance, chain_.at(slots_.queue_count),
-         camera_.count, counts_.choices, camera_.sample_index, bounce_, counts_.lobes, 0},
-        groups(), lobes());
+         queue.hits, chain_.at(slots_.paths), chain_.at(slots_.surfaces), chain_.at(slots_.surroundings),
+         chain_.at(slots_.marked_rays), chain_.at(slots_.light_radiance), marks_, camera_.radiance,
+         chain_.at(slots_.queue_count), camera_.count, counts_.choices, camera_.sample_index, bounce_,
+         counts_.lobes | (bounce_ == counts_.bounces ? PATH_LAST_BOUNCE : 0), 0},
+        groups(), {sampled.diffuse_lobe, sampled.reflects, sampled.transmits, has_environment()});
     if (!counts_.shadows) return;
     append_queue({}, {}, chain_.at(slots_.light_rays), {}, chain_.at(slots_.light_count));
     AnyHitSlots rays{slots_.light_rays, slots_.any_hits, slots_.light_counters, {}};
@@ -152,7 +156,7 @@ PathSlots plan_paths(Layout& layout, const PathCounts& counts, std::uint32_t tri
   if (!counts.any()) return slots;
   slots.materials = layout.add<SurfaceMaterial>("path_colours", material_count);
   slots.path_materials = layout.add<PathMaterial>("path_materials", material_count);
-  slots.ambient = layout.add<vec3>("path_ambient", 1);
+  slots.surroundings = layout.add<Surrounding>("surroundings", surrounding_count(counts.environment_side));
   slots.lights = layout.add<LightSource>("path_lights", counts.lights);
   slots.choices = layout.add<LightChoice>("light_choices", counts.choices);
   slots.emitter_probability = layout.add<float>("emitter_probability", counts.emitters ? triangle_count : 0);

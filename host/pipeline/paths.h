@@ -12,14 +12,15 @@ namespace coppice {
 
 // What paths of light a picture follows.
 struct PathCounts {
-  bool follows = false;        // none: the camera's rays are shaded where they end
-  std::uint32_t bounces = 0;   // at most
-  std::uint32_t choices = 0;   // lights to choose from
-  std::uint32_t lights = 0;    // of those that are listed
-  bool emitters = false;       // triangles are among them
-  bool shadows = false;        // something may be in the way of some
-  std::uint32_t lobes = 0;     // PATH_LOBE_
-  bool bounces_light = false;  // ambient light is met by diffuse bounces alone
+  bool follows = false;                // none: the camera's rays are shaded where they end
+  std::uint32_t bounces = 0;           // at most
+  std::uint32_t choices = 0;           // lights to choose from
+  std::uint32_t lights = 0;            // of those that are listed
+  bool emitters = false;               // triangles are among them
+  bool shadows = false;                // something may be in the way of some
+  std::uint32_t lobes = 0;             // PATH_LOBE_
+  bool bounces_light = false;          // ambient light is met by diffuse bounces alone
+  std::uint32_t environment_side = 0;  // of the map that rays meet which hit nothing; 0: there is none
 
   bool operator==(const PathCounts&) const = default;
   bool any() const { return follows; }
@@ -29,7 +30,7 @@ struct PathCounts {
 struct PathSlots {
   Slot<SurfaceMaterial> materials;          // in: emission and base colour
   Slot<PathMaterial> path_materials;        // in
-  Slot<vec3> ambient;                       // in, one
+  Slot<Surrounding> surroundings;           // in
   Slot<LightSource> lights;                 // in
   Slot<LightChoice> choices;                // in
   Slot<float> emitter_probability;          // in, one a triangle
@@ -43,6 +44,9 @@ struct PathSlots {
   Slot<TraceCounters> bounce_counters, light_counters;
   Slot<PathCounters> lobe_counters;
 };
+
+// Of a map of that side.
+constexpr std::uint64_t surrounding_count(std::uint64_t side) { return 1 + side * (side + 1); }
 
 LobeCounts counts_of(const PathCounters& counters);
 

@@ -68,7 +68,7 @@ template <class Executor>
 void upload_paths(Executor& executor, const PathSlots& slots, const PathArrays& paths) {
   executor.upload(slots.materials, std::span<const SurfaceMaterial>(paths.materials));
   executor.upload(slots.path_materials, std::span<const PathMaterial>(paths.path_materials));
-  executor.upload(slots.ambient, std::span<const vec3>(&paths.ambient, 1));
+  executor.upload(slots.surroundings, std::span<const Surrounding>(paths.surroundings));
   executor.upload(slots.lights, std::span<const LightSource>(paths.lights));
   executor.upload(slots.choices, std::span<const LightChoice>(paths.choices));
   executor.upload(slots.emitter_probability, std::span<const float>(paths.emitter_probability));

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <utility>
 
+#include "render/environment_map.h"
 #include "render/stage_values.h"
 #include "scene/input_error.h"
 #include "scene/surface_effects.h"
@@ -125,16 +127,41 @@ Weighed listed_lights(const Scene& scene, const EffectSet& effects, std::vector<
   return listed;
 }
 
+// One choice, where it has light.
+Weighed environment_of(const EnvironmentMap& map, bool shadows) {
+  Weighed environment;
+  if (is_bright(map))
+    environment.add({.source = LIGHT_CHOICE_ENVIRONMENT,
+                     .probability = 0,
+                     .end = 0,
+                     .shadows = shadows,
+                     .emission = vec3(0),
+                     .padding = 0},
+                    1);
+  return environment;
+}
+
+// Kinds of lights have the same share each, the last one what is over.
+void share_out(std::span<const Weighed* const> kinds, std::vector<LightChoice>& choices) {
+  const auto count = static_cast<uint>(
+      std::ranges::count_if(kinds, [](const Weighed* kind) { return !kind->choices.empty(); }));
+  uint to_come = count;
+  for (const Weighed* const kind : kinds) {
+    if (kind->choices.empty()) continue;
+    const uint so_far = choices.empty() ? 0 : choices.back().end;
+    share_out(*kind, --to_come == 0 ? LIGHT_CHOICE_RANGE - so_far : LIGHT_CHOICE_RANGE / count, choices);
+  }
+}
+
 void add_choices(const Scene& scene, const EffectSet& effects, std::span<const Triangle> triangles,
-                 PathArrays& arrays) {
+                 const EnvironmentMap& map, PathArrays& arrays) {
+  const bool shadows = effects.has(Effect::shadows);
   const Weighed listed = listed_lights(scene, effects, arrays.lights);
-  const Weighed emitters =
-      effects.has(Effect::emission) ? emitters_of(scene, triangles, effects.has(Effect::shadows)) : Weighed{};
-  const bool both = !listed.choices.empty() && !emitters.choices.empty();
-  const uint range = both ? LIGHT_CHOICE_RANGE / 2 : LIGHT_CHOICE_RANGE;
-  if (!listed.choices.empty()) share_out(listed, range, arrays.choices);
+  const Weighed emitters = effects.has(Effect::emission) ? emitters_of(scene, triangles, shadows) : Weighed{};
+  const Weighed environment = environment_of(map, shadows);
+  const Weighed* const kinds[] = {&listed, &emitters, &environment};
+  share_out(kinds, arrays.choices);
   if (!emitters.choices.empty()) {
-    share_out(emitters, range, arrays.choices);
     arrays.emitter_probability.assign(triangles.size(), 0);
     for (const LightChoice& choice : arrays.choices) {
       if ((choice.source & LIGHT_CHOICE_LISTED) == 0)
@@ -148,6 +175,15 @@ void add_choices(const Scene& scene, const EffectSet& effects, std::span<const T
   counts.shadows = std::ranges::any_of(arrays.choices, [](const LightChoice& c) { return c.shadows != 0; });
 }
 
+// With an environment ambient light has no place.
+void add_surroundings(const Scene& scene, const EnvironmentMap& map, PathArrays& arrays) {
+  const auto chosen = std::ranges::find(arrays.choices, LIGHT_CHOICE_ENVIRONMENT, &LightChoice::source);
+  const float probability = chosen == arrays.choices.end() ? 0 : chosen->probability;
+  const vec3 ambient = map.side > 0 ? vec3(0) : flush_to_zero(scene.ambient_light);
+  arrays.surroundings = surroundings(ambient, map, probability);
+  arrays.counts.environment_side = map.side;
+}
+
 }  // namespace
 
 PathArrays path_arrays(const Scene& scene, const EffectSet& effects, std::span<const Triangle> triangles) {
@@ -158,7 +194,12 @@ PathArrays path_arrays(const Scene& scene, const EffectSet& effects, std::span<c
                                 flush_to_zero(glm::clamp(material.diffuse, 0.0f, 1.0f))});
     arrays.path_materials.push_back(path_material(material, effects));
   }
-  add_choices(scene, effects, triangles, arrays);
+  EnvironmentMap map;
+  std::string warning;
+  if (effects.is_used(Effect::environment)) map = environment_map(*scene.environment, warning);
+  if (!warning.empty()) arrays.warnings.push_back(std::move(warning));
+  add_choices(scene, effects, triangles, map, arrays);
+  add_surroundings(scene, map, arrays);
   PathCounts& counts = arrays.counts;
   const bool diffuse = effects.has(Effect::global_illumination);
   counts.follows = true;
@@ -167,7 +208,6 @@ PathArrays path_arrays(const Scene& scene, const EffectSet& effects, std::span<c
                  (effects.has(Effect::refraction) ? PATH_LOBE_TRANSMITS : 0);
   counts.bounces = counts.lobes != 0 ? std::min(scene.bounces, MAX_BOUNCES) : 0;
   counts.bounces_light = diffuse;
-  arrays.ambient = flush_to_zero(scene.ambient_light);
   return arrays;
 }
 

@@ -97,7 +97,8 @@ SceneArrays scene_arrays(const Scene& scene, const EffectSet& effects) {
 }
 
 std::vector<std::string> SceneArrays::image_warnings() const {
-  std::vector<std::string> all = textures.warnings;
+  std::vector<std::string> all = paths.warnings;
+  all.insert(all.end(), textures.warnings.begin(), textures.warnings.end());
   // An image may be one of colours and of opacity, and is then said once.
   std::ranges::copy_if(alpha.warnings, std::back_inserter(all), [&](const std::string& warning) {
     return std::ranges::find(textures.warnings, warning) == textures.warnings.end();

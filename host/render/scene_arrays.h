@@ -41,7 +41,7 @@ struct SceneArrays {
   AlphaCounts alpha_counts() const {
     return {static_cast<std::uint32_t>(alpha.maps.size()), alpha.texels.size()};
   }
-  // About images, of textures and of opacity.
+  // About images, of the environment, of textures and of opacity.
   std::vector<std::string> image_warnings() const;
   // Of the tree over the scene: instances, where there are two levels.
   std::uint32_t primitive_count() const {

@@ -129,6 +129,7 @@ Scene open_scene_with_room(const SceneOptions& options, const DeviceOptions* dev
   }
   Scene scene = open_scene(options.spec, options.up, options.keep_instances);
   set_lens(scene, options);
+  set_environment(scene, options);
   scene.bounces = options.bounces.value_or(scene.bounces);
   return scene;
 }

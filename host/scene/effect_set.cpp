@@ -79,6 +79,8 @@ void call_for_paths(const Scene& scene, EffectSet& effects) {
       effects.call(Effect::refraction, quoted(material) + ", through which light goes");
   }
   if (scene.global_illumination) effects.call(Effect::global_illumination, "/global_illumination");
+  if (scene.environment && scene.environment->intensity > 0)
+    effects.call(Effect::environment, scene.environment->origin);
 }
 
 // What `shadows` says about lights that may cast them.
@@ -115,7 +117,8 @@ void EffectSet::override(Effect effect, bool on) {
 std::vector<Effect> EffectSet::path_effects() const {
   std::vector<Effect> effects;
   if (has(Effect::global_illumination)) effects.push_back(Effect::global_illumination);
-  for (const Effect effect : {Effect::emission, Effect::reflection, Effect::refraction}) {
+  for (const Effect effect :
+       {Effect::emission, Effect::reflection, Effect::refraction, Effect::environment}) {
     if (is_used(effect)) effects.push_back(effect);
   }
   return effects;
@@ -150,8 +153,9 @@ EffectSet effects_of(const Scene& scene, const EffectChanges& changes) {
   if (scene.lens.aperture > 0) effects.call(Effect::depth_of_field, scene.lens.origin);
   call_for_paths(scene, effects);
   effects = changes.applied_to(effects);
-  if (effects.is_used(Effect::emission))
-    effects.call(Effect::shadows, effects.of(Effect::emission).called_by);
+  for (const Effect light : {Effect::emission, Effect::environment}) {
+    if (effects.is_used(light)) effects.call(Effect::shadows, effects.of(light).called_by);
+  }
   return effects;
 }
 
@@ -204,7 +208,8 @@ std::vector<Light> shaded_lights(const Scene& scene, const EffectSet& effects) {
 std::vector<Light> path_lights(const Scene& scene, const EffectSet& effects) {
   std::vector<Light> lights = lights_with(scene, effects);
   const bool default_light = scene.light_origin.empty() && !lights.empty() && !lights[0].is_point;
-  if (default_light && effects.is_used(Effect::emission)) lights.erase(lights.begin());
+  const bool others = effects.is_used(Effect::emission) || effects.is_used(Effect::environment);
+  if (default_light && others) lights.erase(lights.begin());
   cast_shadows(lights, effects);
   return lights;
 }

@@ -24,12 +24,14 @@ enum class Effect : std::uint32_t {
   reflection,
   refraction,
   global_illumination,
-  alpha
+  alpha,
+  environment
 };
 
 inline constexpr std::string_view EFFECT_NAMES[] = {
-    "lights",   "shadows",    "textures",   "depth_of_field",      "ambient_occlusion",
-    "emission", "reflection", "refraction", "global_illumination", "alpha"};
+    "lights",     "shadows",    "textures",   "depth_of_field",      "ambient_occlusion",
+    "emission",   "reflection", "refraction", "global_illumination", "alpha",
+    "environment"};
 inline constexpr std::size_t effect_count = std::size(EFFECT_NAMES);
 
 constexpr std::string_view name_of(Effect effect) { return EFFECT_NAMES[static_cast<std::size_t>(effect)]; }
@@ -107,8 +109,8 @@ bool occludes_ambient(const Scene& scene, const EffectSet& effects);
 // order; none where the directional light alone, without shadows, and plain ambient light are all there is.
 std::vector<Light> shaded_lights(const Scene& scene, const EffectSet& effects);
 
-// Those that paths choose from, which emitters come beside: where there are any, the default light is left
-// out.
+// Those that paths choose from, which emitters and the environment come beside: where there are any, the
+// default light is left out.
 std::vector<Light> path_lights(const Scene& scene, const EffectSet& effects);
 
 }  // namespace coppice

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scene/environment.h"
 #include "scene/texture_map.h"
 
 namespace coppice {
@@ -147,6 +148,7 @@ struct Scene {
   std::vector<Light> more_lights;             // at most MAX_LIGHTS - 1
   glm::vec3 ambient_light{0.35f};             // linear RGB, multiplies Material::diffuse
   std::optional<AmbientOcclusion> occlusion;  // none: it reaches everything
+  std::optional<Environment> environment;     // none: a background that lights nothing
   bool global_illumination = false;           // whether light goes on from diffuse surfaces
   std::uint32_t bounces = 4;                  // of paths at most, beside the camera's rays
   // Null: nothing moves but a swarm. With instances it has no vertices: these are in InstancedMesh::motion.

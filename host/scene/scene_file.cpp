@@ -12,6 +12,7 @@
 #include "scene/printable.h"
 #include "scene/scene_compose.h"
 #include "scene/scene_file_deform.h"
+#include "scene/scene_file_environment.h"
 #include "scene/scene_file_instances.h"
 #include "scene/scene_file_lights.h"
 #include "scene/scene_file_meshes.h"
@@ -253,6 +254,8 @@ Scene SceneFileReader::read() {
     scene.occlusion = AmbientOcclusion{file_["ambient_occlusion"].value("distance", 0.0f)};
   if (file_.contains("camera")) scene.lens = read_scene_lens(file_["camera"]);
   stand_up_whole(scene, file_.value("up", "y"));
+  if (file_.contains("environment"))
+    scene.environment = read_scene_environment(file_["environment"], name_, scene);
   return scene;
 }
 
@@ -279,6 +282,7 @@ Scene load_scene_file(const std::filesystem::path& path, bool keep_instances) {
     scene = parse_scene_file(file.text(), printable(path), sources);
   }
   scene.name = printable(path.stem());
+  if (scene.environment) scene.environment->folder = folder.string();
   return scene;
 }
 

@@ -37,7 +37,9 @@ Light read_one_of(const json& from, const std::string& name, const std::string& 
   return light;
 }
 
-bool is_dark(const Scene& scene) {
+// The environment is yet to come.
+bool is_dark(const Scene& scene, const json& file) {
+  if (file.contains("environment") && file["environment"].value("intensity", 1.0) > 0) return false;
   const auto black = [](const glm::vec3& colour) { return colour == glm::vec3(0); };
   return black(scene.ambient_light) && black(scene.light.radiance) &&
          std::ranges::all_of(scene.more_lights, [&](const Light& l) { return black(l.radiance); }) &&
@@ -65,7 +67,7 @@ void read_scene_lights(const json& file, const std::string& name, Scene& scene) 
     scene.global_illumination = true;
     scene.bounces = file["global_illumination"].value("bounces", scene.bounces);
   }
-  if (!is_dark(scene)) return;
+  if (!is_dark(scene, file)) return;
   scene.warnings.push_back(name + ": no light at all, the default light is taken");
   const Scene with_default;
   scene.light = with_default.light;

@@ -241,4 +241,22 @@ void set_lens(Scene& scene, const SceneOptions& options) {
   if (lens.aperture == 0) scene.warnings.push_back("--focus means nothing without an aperture");
 }
 
+void set_environment(Scene& scene, const SceneOptions& options) {
+  if (options.environment.empty()) return;
+  Environment environment;
+  environment.origin = "--environment";
+  if (options.environment == "sky") {
+    environment.sky = Sky{};
+  } else {
+    const std::filesystem::path path = options.environment;
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(path, error))
+      throw InputError("--environment: '" + printable(path) +
+                       "' is no file, expected an HDR image (.hdr, .exr) or sky");
+    environment.image = path.filename().string();
+    environment.folder = path.parent_path().string();
+  }
+  scene.environment = environment;
+}
+
 }  // namespace coppice

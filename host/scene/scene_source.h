@@ -70,9 +70,13 @@ struct SceneOptions {
   // Of the lens, in the file's unit, in the place of what the scene says.
   std::optional<double> aperture{}, focus{};
   std::optional<std::uint32_t> bounces{};  // of paths at most; none: the scene's own
+  std::string environment{};  // an image, or "sky" for the default one; empty: what the scene says
 };
 
 // Those two, of a scene that is open. Says in its warnings where the focus means nothing.
 void set_lens(Scene& scene, const SceneOptions& options);
+
+// The environment, likewise. Throws InputError where the image is no regular file.
+void set_environment(Scene& scene, const SceneOptions& options);
 
 }  // namespace coppice

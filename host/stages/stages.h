@@ -94,7 +94,7 @@
   STAGE(shade_ambient, ShadeAmbientArgs, NoConstants, exactly)                            \
   STAGE(path_start, PathStartArgs, NoConstants, exactly)                                  \
   STAGE(path_surfaces, PathSurfacesArgs, PathSurfacesConstants, nearly_surfaces)          \
-  STAGE(path_lights, PathLightsArgs, PathBsdfConstants, nearly_lights)                    \
+  STAGE(path_lights, PathLightsArgs, PathLightsConstants, nearly_lights)                  \
   STAGE(path_light_add, PathLightAddArgs, NoConstants, exactly)                           \
   STAGE(path_bounce, PathBounceArgs, PathBsdfConstants, nearly_marked)                    \
   STAGE(path_queue, PathQueueArgs, NoConstants, exactly)                                  \

@@ -21,12 +21,16 @@ Bytes path_start(const PathStartArgs& a, const RunCounts&) {
   return Bytes{a.ray_count} * (sizeof(Path) + (a.sample_index == 0 ? sizeof(vec3) : 0));
 }
 
-// Of each path its ray, its hit and its radiance, of a hit its surface.
+// Of each path its ray, its hit and its radiance, of a hit its surface; of a miss that meets an environment
+// four texels, the two ends of a share and its row.
 Bytes path_surfaces(const PathSurfacesArgs& a, const RunCounts& counts) {
+  const bool environment = (a.flags & PATH_HAS_ENVIRONMENT) != 0;
   return path_share(queued(counts), a.ray_count, counts) *
              (sizeof(Path) + sizeof(vec3) + sizeof(Hit) + 2 * sizeof(vec3)) +
          path_share(met(counts), a.ray_count, counts) *
-             (sizeof(Triangle) + 8 + sizeof(SurfaceMaterial) + sizeof(PathMaterial) + sizeof(SurfacePoint));
+             (sizeof(Triangle) + 8 + sizeof(SurfaceMaterial) + sizeof(PathMaterial) + sizeof(SurfacePoint)) +
+         path_share(environment ? queued(counts) - met(counts) : 0, a.ray_count, counts) * 7 *
+             sizeof(Surrounding);
 }
 
 // Of each ray its mark, of a hit its surface and a light.

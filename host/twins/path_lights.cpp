@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "twins/bsdf.h"
+#include "twins/environment.h"
 #include "twins/leave_surface.h"
 #include "twins/light_source.h"
 #include "twins/paths.h"
@@ -64,11 +65,29 @@ std::optional<SampledLight> sample_emitter(const PathLightsArgs& args, const Lig
   return SampledLight{direction, 1, choice.emission / pdf, pdf};
 }
 
-vec3 reflected_towards(const SurfacePoint& surface, const vec3& view, const SampledLight& light,
-                       const BsdfSwitches& switches) {
+std::optional<SampledLight> sample_environment_light(const PathLightsArgs& args, const Path& path,
+                                                     const glm::vec2& u) {
+  const EnvironmentSample met = sample_environment(
+      args.surroundings, u, sample_2d(path.seed, args.sample_index, PATH_PLACES_IN_TEXEL + args.bounce));
+  if (!(met.light.density > 0)) return std::nullopt;
+  return SampledLight{met.towards, std::numeric_limits<float>::infinity(),
+                      met.light.radiance / met.light.density, met.light.density};
+}
+
+std::optional<SampledLight> sample_choice(const PathLightsArgs& args, const LightChoice& choice,
+                                          const Path& path, const vec3& origin) {
+  const glm::vec2 u = sample_2d(path.seed, args.sample_index, path_dimension(args.bounce, PATH_PLACES_LIGHT));
+  if (choice.source == LIGHT_CHOICE_ENVIRONMENT) return sample_environment_light(args, path, u);
+  if ((choice.source & LIGHT_CHOICE_LISTED) != 0)
+    return sample_listed(args.lights[choice.source & ~LIGHT_CHOICE_LISTED], origin, choice.probability);
+  return sample_emitter(args, choice, origin, u);
+}
+
+vec3 reflected_towards(const SurfacePoint& surface, const vec3& view, const SampledLight& light, uint lobes) {
+  const BsdfSwitches switches = switches_of(lobes);
   const BsdfTerms terms = bsdf_terms(surface, view, unit_vector(light.towards), switches);
   const vec3 all = terms.diffuse + terms.glossy;
-  if (light.pdf == 0) return all;
+  if (light.pdf == 0 || (lobes & PATH_LAST_BOUNCE) != 0) return all;
   const vec3 both = bsdf_sampled(terms, switches);
   return (all - both) + both * power_weight(terms.pdf / light.pdf);
 }
@@ -86,16 +105,10 @@ void path_lights(const PathLightsArgs& args) {
     const vec3 origin = leave_surface(triangle, args.hits[i], normal_towards(triangle, direction));
     const LightChoice& choice = choice_for(
         args, sample_1d(path.seed, args.sample_index, path_dimension(args.bounce, PATH_PICKS_LIGHT)));
-    const auto light =
-        (choice.source & LIGHT_CHOICE_LISTED) != 0
-            ? sample_listed(args.lights[choice.source & ~LIGHT_CHOICE_LISTED], origin, choice.probability)
-            : sample_emitter(
-                  args, choice, origin,
-                  sample_2d(path.seed, args.sample_index, path_dimension(args.bounce, PATH_PLACES_LIGHT)));
+    const auto light = sample_choice(args, choice, path, origin);
     if (!light) continue;
     const vec3 colour =
-        reflected_towards(args.surfaces[i], -unit_vector(direction), *light, switches_of(args.lobes)) *
-        light->radiance;
+        reflected_towards(args.surfaces[i], -unit_vector(direction), *light, args.lobes) * light->radiance;
     if (!(std::fmax(std::fmax(colour.x, colour.y), colour.z) > 0)) continue;
     if (choice.shadows == 0) {
       args.radiance[path.pixel] += path.throughput * colour;

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "twins/environment.h"
 #include "twins/material_of.h"
 #include "twins/paths.h"
 #include "twins/shading.h"
@@ -19,10 +20,18 @@ float share_of_path(const PathSurfacesArgs& args, const Path& path, const Hit& h
   return power_weight(probability * (hit.t * hit.t) / (area * cosine) / path.pdf);
 }
 
+// Of the environment, likewise.
+vec3 environment_met(const PathSurfacesArgs& args, const Path& path, const vec3& direction) {
+  const EnvironmentLight met = environment_in(args.surroundings, direction);
+  return path.pdf == 0 ? met.radiance : met.radiance * power_weight(met.density / path.pdf);
+}
+
 }  // namespace
 
 void path_surfaces(const PathSurfacesArgs& args) {
-  const bool bounces_light = args.bounces_light != 0;
+  const bool bounces_light = (args.flags & PATH_BOUNCES_LIGHT) != 0;
+  const bool has_environment = (args.flags & PATH_HAS_ENVIRONMENT) != 0;
+  const vec3 ambient_light = args.surroundings[0].radiance;
   const uint count = paths_in_queue(args.count_at, args.ray_count);
   for (uint i = 0; i < count; ++i) {
     const Path& path = args.paths[i];
@@ -31,7 +40,9 @@ void path_surfaces(const PathSurfacesArgs& args) {
     vec3& radiance = args.radiance[path.pixel];
     if (hit.triangle == NO_TRIANGLE) {
       const bool ambient = (path.flags & PATH_SEES_AMBIENT) != 0;
-      radiance += path.throughput * (ambient ? args.ambient[0] : sky_colour(direction, args.lighting[0]));
+      radiance += path.throughput * (has_environment ? environment_met(args, path, direction)
+                                     : ambient       ? ambient_light
+                                                     : sky_colour(direction, args.lighting[0]));
       continue;
     }
     const vec3 normal = unit_normal(args.triangles[hit.triangle]);
@@ -47,7 +58,8 @@ void path_surfaces(const PathSurfacesArgs& args) {
     surface.specular = material.specular + (base - material.specular) * material.metallic;
     surface.transmission = material.transmission;
     vec3 seen = colours.ambient * share_of_path(args, path, hit, std::fabs(cosine));
-    if (!bounces_light) seen += surface.diffuse * (1.0f - material.transmission) * args.ambient[0];
+    if (!bounces_light && !has_environment)
+      seen += surface.diffuse * (1.0f - material.transmission) * ambient_light;
     radiance += path.throughput * seen;
   }
 }

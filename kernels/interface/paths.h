@@ -2,6 +2,7 @@
 #ifndef COPPICE_INTERFACE_PATHS_H
 #define COPPICE_INTERFACE_PATHS_H
 #include "circle.h"
+#include "environment.h"
 #include "lights.h"
 INTERFACE_BEGIN
 
@@ -53,7 +54,8 @@ const uint PATH_GROUP = 64;
 const uint MAX_BOUNCES = 64;
 
 const uint PATH_SEES_AMBIENT =
-    1u;  // of a diffuse bounce: what hits nothing meets the ambient light, not the sky
+    1u;  // of a diffuse bounce: what hits nothing meets the ambient light, not the sky; with an environment,
+         // which is what all meet, of no meaning
 
 // Of the ray of the same index in the queue.
 struct Path {
@@ -79,7 +81,7 @@ struct PathMaterial {
 
 // Sources of light, to choose one by a number in [0, 2^24): the first whose `end` is above it.
 struct LightChoice {
-  uint source;        // triangle, or LIGHT_CHOICE_LISTED and an index of lights
+  uint source;        // triangle, LIGHT_CHOICE_LISTED and an index of lights, or LIGHT_CHOICE_ENVIRONMENT
   float probability;  // exactly its share of 2^24; positive
   uint end;
   uint shadows;   // 0: nothing is in its way
@@ -88,6 +90,7 @@ struct LightChoice {
 };
 
 const uint LIGHT_CHOICE_LISTED = 0x80000000u;
+const uint LIGHT_CHOICE_ENVIRONMENT = 0xffffffffu;
 const uint LIGHT_CHOICE_RANGE = 0x1000000u;
 
 // Rays by which paths have gone on, by the lobe: 64-bit sums, low word first.
@@ -130,13 +133,17 @@ struct PathSurfacesArgs {
   SurfacePointBuffer surfaces;  // out, one a ray; of a miss not written
   Vec3Buffer radiance;
   READS(UintBuffer) count_at;  // as in TraceClosestArgs
-  READS(Vec3Buffer) ambient;   // one
+  READS(SurroundingBuffer) surroundings;
   uint ray_count;
-  uint bounces_light;  // 1: ambient light is what diffuse bounces meet; 0: it reaches all surfaces
+  uint flags;  // PATH_BOUNCES_LIGHT, PATH_HAS_ENVIRONMENT
 };
 
+const uint PATH_BOUNCES_LIGHT = 1u;    // ambient light is what diffuse bounces meet, else it reaches all surfaces
+const uint PATH_HAS_ENVIRONMENT = 2u;  // rays that hit nothing meet the map of the surroundings
+
 struct PathSurfacesConstants {
-  uint bounces_light;  // as in PathSurfacesArgs
+  uint bounces_light;  // 1: the flag is set, as the next one
+  uint has_environment;
 };
 
 // Of each hit a light, chosen and sampled, and what reaches the pixel from it unless something is in the way.
@@ -148,6 +155,7 @@ struct PathLightsArgs {
   READS(HitBuffer) hits;
   READS(PathBuffer) paths;
   READS(SurfacePointBuffer) surfaces;
+  READS(SurroundingBuffer) surroundings;  // read where it is a choice
   RayBuffer light_rays;       // out, of marked ones
   Vec3Buffer light_radiance;  // out, of marked ones
   UintBuffer marks;           // out, one a ray: 1 where something may be in the way, else 0
@@ -157,7 +165,7 @@ struct PathLightsArgs {
   uint choice_count;  // positive
   uint sample_index;
   uint bounce;
-  uint lobes;  // PATH_LOBE_
+  uint lobes;  // PATH_LOBE_, PATH_LAST_BOUNCE
   uint padding;
 };
 
@@ -165,6 +173,13 @@ struct PathBsdfConstants {
   uint diffuse_lobe;  // see lib/bsdf.glsl
   uint reflects;
   uint transmits;
+};
+
+struct PathLightsConstants {
+  uint diffuse_lobe;  // as in PathBsdfConstants
+  uint reflects;
+  uint transmits;
+  uint has_environment;  // 1: it is a choice
 };
 
 // Adds the radiance of marked lights whose ray has hit nothing.
@@ -218,6 +233,7 @@ struct PathQueueArgs {
 const uint PATH_LOBE_DIFFUSE = 1u;
 const uint PATH_LOBE_REFLECTS = 2u;
 const uint PATH_LOBE_TRANSMITS = 4u;
+const uint PATH_LAST_BOUNCE = 8u;  // no path goes on to meet what lights are sampled: they count in full
 
 // Where numbers of sample_2d come from: a dimension each use and bounce.
 const uint PATH_DIMENSIONS = 5u;  // of a bounce
@@ -226,6 +242,8 @@ const uint PATH_PLACES_LIGHT = 1u;
 const uint PATH_PICKS_LOBE = 2u;
 const uint PATH_TURNS = 3u;
 const uint PATH_ENDS = 4u;
+// Of the dimensions behind those of all bounces, one a bounce: where in a texel of the environment.
+const uint PATH_PLACES_IN_TEXEL = (MAX_BOUNCES + 1u) * PATH_DIMENSIONS;
 
 const uint PATH_SURE_BOUNCES = 2u;  // then a path goes on by chance, in proportion to its throughput
 const float PATH_MOST_SURE = 0.95;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <span>
 
 #include "scene/bounds.h"
@@ -15,6 +16,14 @@ bool is_sound(const Material& material) {
   return is_finite(material.diffuse) && is_finite(material.specular) && is_finite(material.emission) &&
          std::isfinite(material.shininess) && std::isfinite(material.index_of_refraction) &&
          material.opacity >= 0 && material.opacity <= 1;
+}
+
+bool is_sound(const Environment& environment) {
+  if (!(environment.intensity >= 0) || !std::isfinite(environment.rotation_degrees)) return false;
+  if (!environment.sky) return !environment.image.empty();
+  const Sky& sky = *environment.sky;
+  return environment.image.empty() && is_finite(sky.sun) && sky.sun.y >= 0 && glm::length(sky.sun) > 0.99f &&
+         glm::length(sky.sun) < 1.01f;
 }
 
 std::string complaint_about_motion(std::span<const glm::vec3> positions, const Motion& motion) {
@@ -137,6 +146,7 @@ std::string complaint_about(const Scene& scene) {
   for (const std::string& warning : scene.warnings) {
     if (!is_one_line(warning)) return "warning '" + warning + "'";
   }
+  if (scene.environment && !is_sound(*scene.environment)) return "environment";
   if (!is_finite(scene.light.direction)) return "light";
   for (const Light& light : scene.more_lights) {
     if (!is_finite(light.place) || !is_finite(light.radiance)) return "light " + light.origin;
