@@ -121,6 +121,8 @@ Scene scene_of_all() {
   Scene scene = make_built_in("terrain:50");
   scene.light.shadows = scene.global_illumination = true;
   scene.occlusion.emplace();
+  scene.environment = Environment{.image = {}, .folder = {}, .sky = Sky{}, .origin = "/environment"};
+  scene.fog = Fog{.density = 1, .albedo = vec3(1), .anisotropy = 0, .box = {}, .origin = "/fog"};
   scene.more_lights.push_back({.is_point = true, .origin = "/lights/0"});
   scene.lens = {.aperture = 0.1f, .focus = 1, .origin = "/camera/aperture"};
   scene.bounces = 1;

@@ -33,7 +33,7 @@ std::uint64_t rays_of(const FrameReport& report, Effect effect) {
   if (effect == Effect::global_illumination) return report.lobes.diffuse;
   if (effect == Effect::ambient_occlusion) return report.occlusion.rays;
   const bool lights = effect == Effect::lights || effect == Effect::shadows || effect == Effect::emission ||
-                      effect == Effect::environment;
+                      effect == Effect::environment || effect == Effect::fog;
   return lights ? report.shadow.rays : 0;
 }
 
@@ -44,6 +44,7 @@ bool belongs_to(const Step& step, Effect effect, const Sharing& sharing) {
     return rays && rays->has_lens != 0;
   }
   if (effect == Effect::textures) return stage_of(step) == &stages::texture_hits;
+  if (effect == Effect::fog) return stage_of(step) == &stages::path_fog;
   if (const PathSurfacesArgs* const surfaces = args_of(step, stages::path_surfaces))
     return (effect == Effect::emission && surfaces->emitter_probability.value != 0) ||
            (effect == Effect::environment && (surfaces->flags & PATH_HAS_ENVIRONMENT) != 0);

@@ -19,7 +19,8 @@ RunCounts counts_of_picture(const GpuExecutor& executor, const TracePlan& plan) 
     return RunCounts::Secondary{counts.rays * lights, left.rays, left.hits, left.steps};
   };
   const PathCounts& paths = plan.options.paths;
-  const std::uint64_t lights = paths.any() ? paths.bounces + 1 : plan.options.lights.shadows;
+  const std::uint64_t lights =
+      paths.any() ? (paths.bounces + 1) * (paths.fog ? 2 : 1) : plan.options.lights.shadows;
   counts.shadow = secondary(shadow_counters(plan), lights);
   counts.occlusion = secondary(plan.lights.occlusion_counters, 1);
   counts.paths = secondary(plan.paths.bounce_counters, paths.bounces);

@@ -35,6 +35,7 @@ class PathChain {
                groups());
     PathQueue queue{camera_.rays, camera_.hits};
     for (bounce_ = 0;; ++bounce_) {
+      if (counts_.fog) append_fog(queue);
       append_surfaces(queue);
       if (counts_.choices > 0) append_lights(queue);
       if (bounce_ == counts_.bounces) return;
@@ -79,8 +80,25 @@ class PathChain {
          queue.hits, chain_.at(slots_.paths), chain_.at(slots_.surfaces), chain_.at(slots_.surroundings),
          chain_.at(slots_.marked_rays), chain_.at(slots_.light_radiance), marks_, camera_.radiance,
          chain_.at(slots_.queue_count), camera_.count, counts_.choices, camera_.sample_index, bounce_,
-         counts_.lobes | (bounce_ == counts_.bounces ? PATH_LAST_BOUNCE : 0), 0},
-        groups(), {sampled.diffuse_lobe, sampled.reflects, sampled.transmits, has_environment()});
+         counts_.lobes | (bounce_ == counts_.bounces ? PATH_LAST_BOUNCE : 0), counts_.fog},
+        groups(),
+        {sampled.diffuse_lobe, sampled.reflects, sampled.transmits, has_environment(), counts_.fog});
+    append_light_rays();
+  }
+
+  void append_fog(const PathQueue& queue) {
+    chain_.run(stages::path_fog,
+               {camera_.triangles, address_or_null(chain_, slots_.lights),
+                address_or_null(chain_, slots_.choices), chain_.at(slots_.surroundings), queue.rays,
+                queue.hits, chain_.at(slots_.paths), chain_.at(slots_.marked_rays),
+                chain_.at(slots_.light_radiance), marks_, camera_.radiance, chain_.at(slots_.queue_count),
+                camera_.count, counts_.choices, camera_.sample_index, bounce_, counts_.bounces_light, 0},
+               groups(), {has_environment()});
+    if (counts_.choices > 0) append_light_rays();
+  }
+
+  // Of marked rays to lights what reaches the pixel, where anything may be in their way.
+  void append_light_rays() {
     if (!counts_.shadows) return;
     append_queue({}, {}, chain_.at(slots_.light_rays), {}, chain_.at(slots_.light_count));
     AnyHitSlots rays{slots_.light_rays, slots_.any_hits, slots_.light_counters, {}};
@@ -156,7 +174,7 @@ PathSlots plan_paths(Layout& layout, const PathCounts& counts, std::uint32_t tri
   if (!counts.any()) return slots;
   slots.materials = layout.add<SurfaceMaterial>("path_colours", material_count);
   slots.path_materials = layout.add<PathMaterial>("path_materials", material_count);
-  slots.surroundings = layout.add<Surrounding>("surroundings", surrounding_count(counts.environment_side));
+  slots.surroundings = layout.add<Surrounding>("surroundings", surrounding_count(counts));
   slots.lights = layout.add<LightSource>("path_lights", counts.lights);
   slots.choices = layout.add<LightChoice>("light_choices", counts.choices);
   slots.emitter_probability = layout.add<float>("emitter_probability", counts.emitters ? triangle_count : 0);

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "interface/paths.h"
+#include "interface/fog.h"
 #include "pipeline/alpha.h"
 #include "pipeline/lights.h"
 #include "pipeline/textures.h"
@@ -21,6 +21,7 @@ struct PathCounts {
   std::uint32_t lobes = 0;             // PATH_LOBE_
   bool bounces_light = false;          // ambient light is met by diffuse bounces alone
   std::uint32_t environment_side = 0;  // of the map that rays meet which hit nothing; 0: there is none
+  bool fog = false;                    // it is in the way of light
 
   bool operator==(const PathCounts&) const = default;
   bool any() const { return follows; }
@@ -45,8 +46,11 @@ struct PathSlots {
   Slot<PathCounters> lobe_counters;
 };
 
-// Of a map of that side.
-constexpr std::uint64_t surrounding_count(std::uint64_t side) { return 1 + side * (side + 1); }
+// Entries of the surroundings.
+constexpr std::uint64_t surrounding_count(const PathCounts& counts) {
+  const std::uint64_t side = counts.environment_side;
+  return 1 + side * (side + 1) + (counts.fog ? FOG_ENTRIES : 0);
+}
 
 LobeCounts counts_of(const PathCounters& counters);
 

@@ -1,12 +1,14 @@
 #include "render/path_arrays.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <utility>
 
 #include "render/environment_map.h"
+#include "render/scene_arrays.h"
 #include "render/stage_values.h"
 #include "scene/input_error.h"
 #include "scene/surface_effects.h"
@@ -175,6 +177,16 @@ void add_choices(const Scene& scene, const EffectSet& effects, std::span<const T
   counts.shadows = std::ranges::any_of(arrays.choices, [](const LightChoice& c) { return c.shadows != 0; });
 }
 
+// Behind the map, see interface/fog.h.
+void add_fog(const Fog& fog, std::span<const Triangle> triangles, PathArrays& arrays) {
+  const Aabb all = box_of(triangles);
+  const FogBox box = fog.box.value_or(FogBox{all.box_min, all.box_max});
+  arrays.surroundings.push_back({flush_to_zero(box.min), std::bit_cast<uint>(fog.density)});
+  arrays.surroundings.push_back({flush_to_zero(box.max), std::bit_cast<uint>(fog.anisotropy)});
+  arrays.surroundings.push_back({flush_to_zero(glm::clamp(fog.albedo, 0.0f, 1.0f)), 0});
+  arrays.counts.fog = true;
+}
+
 // With an environment ambient light has no place.
 void add_surroundings(const Scene& scene, const EnvironmentMap& map, PathArrays& arrays) {
   const auto chosen = std::ranges::find(arrays.choices, LIGHT_CHOICE_ENVIRONMENT, &LightChoice::source);
@@ -200,6 +212,7 @@ PathArrays path_arrays(const Scene& scene, const EffectSet& effects, std::span<c
   if (!warning.empty()) arrays.warnings.push_back(std::move(warning));
   add_choices(scene, effects, triangles, map, arrays);
   add_surroundings(scene, map, arrays);
+  if (effects.is_used(Effect::fog)) add_fog(*scene.fog, triangles, arrays);
   PathCounts& counts = arrays.counts;
   const bool diffuse = effects.has(Effect::global_illumination);
   counts.follows = true;

@@ -81,6 +81,7 @@ void call_for_paths(const Scene& scene, EffectSet& effects) {
   if (scene.global_illumination) effects.call(Effect::global_illumination, "/global_illumination");
   if (scene.environment && scene.environment->intensity > 0)
     effects.call(Effect::environment, scene.environment->origin);
+  if (scene.fog) effects.call(Effect::fog, scene.fog->origin);
 }
 
 // What `shadows` says about lights that may cast them.
@@ -118,7 +119,7 @@ std::vector<Effect> EffectSet::path_effects() const {
   std::vector<Effect> effects;
   if (has(Effect::global_illumination)) effects.push_back(Effect::global_illumination);
   for (const Effect effect :
-       {Effect::emission, Effect::reflection, Effect::refraction, Effect::environment}) {
+       {Effect::emission, Effect::reflection, Effect::refraction, Effect::environment, Effect::fog}) {
     if (is_used(effect)) effects.push_back(effect);
   }
   return effects;

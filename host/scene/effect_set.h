@@ -25,13 +25,14 @@ enum class Effect : std::uint32_t {
   refraction,
   global_illumination,
   alpha,
-  environment
+  environment,
+  fog
 };
 
 inline constexpr std::string_view EFFECT_NAMES[] = {
-    "lights",     "shadows",    "textures",   "depth_of_field",      "ambient_occlusion",
-    "emission",   "reflection", "refraction", "global_illumination", "alpha",
-    "environment"};
+    "lights",      "shadows",    "textures",   "depth_of_field",      "ambient_occlusion",
+    "emission",    "reflection", "refraction", "global_illumination", "alpha",
+    "environment", "fog"};
 inline constexpr std::size_t effect_count = std::size(EFFECT_NAMES);
 
 constexpr std::string_view name_of(Effect effect) { return EFFECT_NAMES[static_cast<std::size_t>(effect)]; }

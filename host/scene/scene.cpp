@@ -34,6 +34,17 @@ void move_to_scene(Scene& scene, const glm::dmat4& step) {
   scene.motion = motion;
 }
 
+// What is thin over a long way is as thin over as many shorter units.
+void scale_fog(Fog& fog, int exponent) {
+  const auto times = [](float x, int power) { return static_cast<float>(std::ldexp(double{x}, power)); };
+  fog.density = times(fog.density, -exponent);
+  if (!fog.box) return;
+  for (int axis = 0; axis < 3; ++axis) {
+    fog.box->min[axis] = times(fog.box->min[axis], exponent);
+    fog.box->max[axis] = times(fog.box->max[axis], exponent);
+  }
+}
+
 }  // namespace
 
 void set_lights(Scene& scene, std::vector<Light> lights) {
@@ -50,6 +61,10 @@ void set_lights(Scene& scene, std::vector<Light> lights) {
 std::uint32_t count_inactive(const Scene& scene) {
   return static_cast<std::uint32_t>(std::count_if(scene.indices.begin(), scene.indices.end(),
                                                   [&](glm::uvec3 t) { return !is_active(scene, t); }));
+}
+
+FogBox fog_box(const glm::vec3& corner, const glm::vec3& opposite) {
+  return {glm::min(corner, opposite), glm::max(corner, opposite)};
 }
 
 void bring_into_range(Scene& scene) {
@@ -69,6 +84,7 @@ void bring_into_range(Scene& scene) {
   scene.lens.aperture = scale(scene.lens.aperture);
   scene.lens.focus = scale(scene.lens.focus);
   if (scene.occlusion) scene.occlusion->distance = scale(scene.occlusion->distance);
+  if (scene.fog) scale_fog(*scene.fog, exponent);
   for (Light& light : scene.more_lights) {
     if (!light.is_point) continue;
     scale_point(light.place);
@@ -88,6 +104,10 @@ void stand_up(Scene& scene, std::string_view up) {
   }
   for (Instance& instance : scene.instances) instance.transform = turn * instance.transform;
   for (Light& light : scene.more_lights) light.place = turn * light.place;
+  if (scene.fog && scene.fog->box) {
+    FogBox& box = *scene.fog->box;
+    box = fog_box(turn * box.min, turn * box.max);
+  }
   scene.turn = turn * scene.turn;
   move_to_scene(scene, glm::dmat4(glm::dmat3(turn)));
   scene.camera.reset();

@@ -85,6 +85,18 @@ struct AmbientOcclusion {
 
 inline constexpr double OCCLUSION_SHARE = 0.05;
 
+// The same everywhere in a box: scatters light, and absorbs it.
+struct FogBox {
+  glm::vec3 min{0.0f}, max{0.0f};  // none above the other
+};
+struct Fog {
+  float density = 0.0f;       // extinction along a unit of the scene; positive
+  glm::vec3 albedo{1.0f};     // of what is taken from a ray the part that is scattered, 0 to 1
+  float anisotropy = 0.0f;    // mean cosine of the angle of scattering, -0.95 to 0.95
+  std::optional<FogBox> box;  // none: that of the triangles
+  std::string origin;         // what the file calls it
+};
+
 // Of a corner without texture coordinates, or without a normal.
 inline constexpr std::uint32_t NO_ATTRIBUTE = ~0u;
 
@@ -149,12 +161,16 @@ struct Scene {
   glm::vec3 ambient_light{0.35f};             // linear RGB, multiplies Material::diffuse
   std::optional<AmbientOcclusion> occlusion;  // none: it reaches everything
   std::optional<Environment> environment;     // none: a background that lights nothing
+  std::optional<Fog> fog;                     // none: clear air
   bool global_illumination = false;           // whether light goes on from diffuse surfaces
   std::uint32_t bounces = 4;                  // of paths at most, beside the camera's rays
   // Null: nothing moves but a swarm. With instances it has no vertices: these are in InstancedMesh::motion.
   std::shared_ptr<const Motion> motion;
   std::vector<std::string> warnings;  // one line each, what was odd about the input but not fatal
 };
+
+// Between two opposite corners.
+FogBox fog_box(const glm::vec3& corner, const glm::vec3& opposite);
 
 // The scene's lights, in this order: the first directional one becomes Scene::light, if there is one.
 void set_lights(Scene& scene, std::vector<Light> lights);

@@ -13,6 +13,7 @@
 #include "scene/scene_compose.h"
 #include "scene/scene_file_deform.h"
 #include "scene/scene_file_environment.h"
+#include "scene/scene_file_fog.h"
 #include "scene/scene_file_instances.h"
 #include "scene/scene_file_lights.h"
 #include "scene/scene_file_meshes.h"
@@ -256,6 +257,7 @@ Scene SceneFileReader::read() {
   stand_up_whole(scene, file_.value("up", "y"));
   if (file_.contains("environment"))
     scene.environment = read_scene_environment(file_["environment"], name_, scene);
+  if (file_.contains("fog")) scene.fog = read_scene_fog(file_["fog"], name_, scene);
   return scene;
 }
 

@@ -4,6 +4,7 @@
 #include "interface/batch.h"
 #include "interface/bounds.h"
 #include "interface/copy.h"
+#include "interface/fog.h"
 #include "interface/gather.h"
 #include "interface/hploc.h"
 #include "interface/instances.h"
@@ -93,6 +94,7 @@
   STAGE(occlusion_rays, OcclusionRaysArgs, NoConstants, nearly_shadow_rays)               \
   STAGE(shade_ambient, ShadeAmbientArgs, NoConstants, exactly)                            \
   STAGE(path_start, PathStartArgs, NoConstants, exactly)                                  \
+  STAGE(path_fog, PathFogArgs, PathFogConstants, nearly_fog)                              \
   STAGE(path_surfaces, PathSurfacesArgs, PathSurfacesConstants, nearly_surfaces)          \
   STAGE(path_lights, PathLightsArgs, PathLightsConstants, nearly_lights)                  \
   STAGE(path_light_add, PathLightAddArgs, NoConstants, exactly)                           \
@@ -138,6 +140,10 @@ inline constexpr NearlySlot nearly_surfaces[] = {{"radiance", Nearly::radiance},
                                                  {"surfaces", Nearly::surfaces}};
 inline constexpr NearlySlot nearly_lights[] = {
     {"radiance", Nearly::radiance}, {"light_radiance", Nearly::radiance}, {"marked_rays", Nearly::rays}};
+inline constexpr NearlySlot nearly_fog[] = {{"radiance", Nearly::radiance},
+                                            {"light_radiance", Nearly::radiance},
+                                            {"marked_rays", Nearly::rays},
+                                            {"paths", Nearly::paths}};
 inline constexpr NearlySlot nearly_marked[] = {{"marked_rays", Nearly::rays},
                                                {"bounced_paths", Nearly::paths}};
 inline constexpr NearlySlot nearly_noise[] = {{"noise_sums", Nearly::noise}};

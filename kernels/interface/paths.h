@@ -166,7 +166,7 @@ struct PathLightsArgs {
   uint sample_index;
   uint bounce;
   uint lobes;  // PATH_LOBE_, PATH_LAST_BOUNCE
-  uint padding;
+  uint has_fog;  // 1: light is dimmed by the fog of the surroundings, see interface/fog.h
 };
 
 struct PathBsdfConstants {
@@ -180,6 +180,7 @@ struct PathLightsConstants {
   uint reflects;
   uint transmits;
   uint has_environment;  // 1: it is a choice
+  uint has_fog;          // as in PathLightsArgs
 };
 
 // Adds the radiance of marked lights whose ray has hit nothing.

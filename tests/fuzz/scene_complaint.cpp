@@ -26,6 +26,11 @@ bool is_sound(const Environment& environment) {
          glm::length(sky.sun) < 1.01f;
 }
 
+bool is_sound(const Fog& fog) {
+  if (!(fog.density >= 0) || !is_finite(fog.albedo) || !(std::abs(fog.anisotropy) < 1)) return false;
+  return !fog.box || (is_finite(fog.box->min) && is_finite(fog.box->max));
+}
+
 std::string complaint_about_motion(std::span<const glm::vec3> positions, const Motion& motion) {
   const std::size_t count = positions.size();
   const auto is_inside = [&](VertexRange range) {
@@ -147,6 +152,7 @@ std::string complaint_about(const Scene& scene) {
     if (!is_one_line(warning)) return "warning '" + warning + "'";
   }
   if (scene.environment && !is_sound(*scene.environment)) return "environment";
+  if (scene.fog && !is_sound(*scene.fog)) return "fog";
   if (!is_finite(scene.light.direction)) return "light";
   for (const Light& light : scene.more_lights) {
     if (!is_finite(light.place) || !is_finite(light.radiance)) return "light " + light.origin;
