@@ -132,7 +132,8 @@ TEST(Effects, ChangesThatNobodyKnowsAreNamed) {
   };
   const std::string all =
       " is no + or - and an effect behind it: there are lights, shadows, textures, "
-      "depth_of_field, ambient_occlusion, emission, reflection, refraction, global_illumination, alpha, environment, fog";
+      "depth_of_field, ambient_occlusion, emission, reflection, refraction, global_illumination, alpha, "
+      "environment, fog";
   EXPECT_EQ(error_of("+mist"), "'+mist'" + all);
   EXPECT_EQ(error_of("shadows"), "'shadows'" + all);
   EXPECT_EQ(error_of("+"), "'+'" + all);

@@ -4,22 +4,25 @@
 #include "types.h"
 INTERFACE_BEGIN
 
-// The map is a square of side * side texels, onto which the sphere is folded by way of an octahedron (Engelhardt and
-// Dachsbacher 2008, "Octahedron Environment Maps"): the direction (x, y, z) divided by |x| + |y| + |z| is at (x, z), from
-// -1 to 1, where y is not negative, else at ((1 - |z|) sign(x), (1 - |x|) sign(z)), the sign of 0 being positive. Column
-// and row rise with the first and the second. A place p on the octahedron has the solid angle |p|^-3 for each unit of
-// area of the square, whose area is 4. Radiance is bilinear between the centres of texels, and goes on beyond an edge
-// mirrored at the middle of that edge, which is the same place of the octahedron.
+// The map is a square of side * side texels, onto which the sphere is folded by way of an octahedron
+// (Engelhardt and Dachsbacher 2008, "Octahedron Environment Maps"): the direction (x, y, z) divided by |x| +
+// |y| + |z| is at (x, z), from -1 to 1, where y is not negative, else at ((1 - |z|) sign(x), (1 - |x|)
+// sign(z)), the sign of 0 being positive. Column and row rise with the first and the second. A place p on the
+// octahedron has the solid angle |p|^-3 for each unit of area of the square, whose area is 4. Radiance is
+// bilinear between the centres of texels, and goes on beyond an edge mirrored at the middle of that edge,
+// which is the same place of the octahedron.
 //
-// A direction is chosen by integers: a row by its share of 2^24, then a column by its share of the row's 2^24, then a
-// place uniform in the texel. So its density by solid angle is
+// A direction is chosen by integers: a row by its share of 2^24, then a column by its share of the row's
+// 2^24, then a place uniform in the texel. So its density by solid angle is
 //   row share * column share * 2^-48 * side^2 / 4 * |p|^3.
 //
 // Of the array of this struct
-//   0                      radiance: ambient light; end: the side of the map, a power of two; 0: there is none, and nothing
+//   0                      radiance: ambient light; end: the side of the map, a power of two; 0: there is
+//   none, and nothing
 //                          else in the array
-//   1 + side * y + x       a texel: its radiance; the end of its share of the row, shares cumulated along the row
-//   1 + side * side + y    a row: x of radiance is the probability that the environment is chosen among the lights, times
+//   1 + side * y + x       a texel: its radiance; the end of its share of the row, shares cumulated along the
+//   row 1 + side * side + y    a row: x of radiance is the probability that the environment is chosen among
+//   the lights, times
 //                          the row's share * 2^-48 * side^2 / 4; end: that of its share, cumulated
 // The ends of the last row, and of the last texel of each row that has a share, are 2^24.
 struct Surrounding {

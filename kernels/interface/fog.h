@@ -4,7 +4,8 @@
 #include "paths.h"
 INTERFACE_BEGIN
 
-// Where there is fog its numbers are behind the map in the array of Surrounding, from 1 + side * (side + 1) on:
+// Where there is fog its numbers are behind the map in the array of Surrounding, from 1 + side * (side + 1)
+// on:
 //   radiance: least corner of the box; end: bits of the density, extinction along a unit of length; positive
 //   radiance: greatest corner; end: bits of the mean cosine of the angle of scattering, -0.95 to 0.95
 //   radiance: albedo, the part of what is taken from a ray that is scattered, 0 to 1; end: 0
@@ -12,10 +13,11 @@ const uint FOG_ENTRIES = 3u;
 
 const float ONE_BY_4PI = 0.0795774715;
 
-// Of each path of the queue the way of its ray to what it has hit. The throughput becomes what the fog lets through;
-// ambient light that the fog scatters, which reaches it as it does surfaces, is added to the radiance; and of a point of the way, the likelier the more of what
-// is scattered there comes through, a light is sampled, as of surfaces in PathLightsArgs. So light is scattered once on
-// its way between two surfaces (single scattering).
+// Of each path of the queue the way of its ray to what it has hit. The throughput becomes what the fog lets
+// through; ambient light that the fog scatters, which reaches it as it does surfaces, is added to the
+// radiance; and of a point of the way, the likelier the more of what is scattered there comes through, a
+// light is sampled, as of surfaces in PathLightsArgs. So light is scattered once on its way between two
+// surfaces (single scattering).
 struct PathFogArgs {
   READS(TriangleBuffer) triangles;
   READS(LightSourceBuffer) lights;

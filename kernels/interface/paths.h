@@ -53,9 +53,8 @@ const float ONE_BY_PI = 0.318309886;
 const uint PATH_GROUP = 64;
 const uint MAX_BOUNCES = 64;
 
-const uint PATH_SEES_AMBIENT =
-    1u;  // of a diffuse bounce: what hits nothing meets the ambient light, not the sky; with an environment,
-         // which is what all meet, of no meaning
+const uint PATH_SEES_AMBIENT = 1u;  // of a diffuse bounce: what hits nothing meets the ambient light, not the
+                                    // sky; with an environment, which is what all meet, of no meaning
 
 // Of the ray of the same index in the queue.
 struct Path {
@@ -138,7 +137,8 @@ struct PathSurfacesArgs {
   uint flags;  // PATH_BOUNCES_LIGHT, PATH_HAS_ENVIRONMENT
 };
 
-const uint PATH_BOUNCES_LIGHT = 1u;    // ambient light is what diffuse bounces meet, else it reaches all surfaces
+const uint PATH_BOUNCES_LIGHT =
+    1u;  // ambient light is what diffuse bounces meet, else it reaches all surfaces
 const uint PATH_HAS_ENVIRONMENT = 2u;  // rays that hit nothing meet the map of the surroundings
 
 struct PathSurfacesConstants {
@@ -156,16 +156,16 @@ struct PathLightsArgs {
   READS(PathBuffer) paths;
   READS(SurfacePointBuffer) surfaces;
   READS(SurroundingBuffer) surroundings;  // read where it is a choice
-  RayBuffer light_rays;       // out, of marked ones
-  Vec3Buffer light_radiance;  // out, of marked ones
-  UintBuffer marks;           // out, one a ray: 1 where something may be in the way, else 0
-  Vec3Buffer radiance;        // to which is added what nothing can be in the way of
+  RayBuffer light_rays;                   // out, of marked ones
+  Vec3Buffer light_radiance;              // out, of marked ones
+  UintBuffer marks;                       // out, one a ray: 1 where something may be in the way, else 0
+  Vec3Buffer radiance;                    // to which is added what nothing can be in the way of
   READS(UintBuffer) count_at;
   uint ray_count;
   uint choice_count;  // positive
   uint sample_index;
   uint bounce;
-  uint lobes;  // PATH_LOBE_, PATH_LAST_BOUNCE
+  uint lobes;    // PATH_LOBE_, PATH_LAST_BOUNCE
   uint has_fog;  // 1: light is dimmed by the fog of the surroundings, see interface/fog.h
 };
 
