@@ -1,4 +1,5 @@
-// In:  a queue of paths and what its rays have hit. Out: surfaces, and radiance of what is emitted; see PathSurfacesArgs.
+// In:  a queue of paths and what its rays have hit. Out: surfaces, and radiance of what is emitted; see
+// PathSurfacesArgs.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/path.glsl"

@@ -92,7 +92,7 @@ TEST_F(CommandEffects, ExplainNamesWhatCalledForEach) {
 
 TEST_F(CommandEffects, TheTableHasTheCostOfWhatIsOnAndZeroesForTheRest) {
   const json rich = report_of("effects scene.json")["effects"];
-  ASSERT_EQ(rich.size(), 10u);
+  ASSERT_EQ(rich.size(), 12u);
   EXPECT_EQ(rich[0]["name"], "lights");
   EXPECT_GT(rich[0]["rays"], 0) << "one of the points casts shadows";
   const json& shadows = rich[1];
@@ -279,52 +279,6 @@ TEST_F(CommandEffects, PathsAreCountedByWhatTheyMeetAndTakeATree) {
                  "--builder none: paths of light are traced through a tree, which takes another builder "
                  "(--effects=-emission,-reflection goes without)");
   expect_refused(render + " --bounces 65", 2, "--bounces");
-}
-
-TEST_F(CommandEffects, AnEnvironmentComesFromTheSceneOrTheCommandLine) {
-  write("sky.json", R"({
-    "meshes": { "two": { "file": "two.obj" } }, "objects": [ { "mesh": "two" } ],
-    "camera": { "position": [3, 8, 6], "target": [0, 0, 0] }, "environment": { "sky": {} } })");
-  write("two_views.json", R"({
-    "meshes": { "two": { "file": "two.obj" } }, "objects": [ { "mesh": "two" } ],
-    "camera": { "position": [3, 8, 6], "target": [0, 0, 0] } })");
-  const json lit = report_of("render sky.json -o out.png");
-  EXPECT_EQ(lit["effects"], (json{"shadows", "environment"}));
-  EXPECT_GT(lit["rays"]["shadow"], 500);
-  EXPECT_EQ(report_of("render two_views.json --environment sky -o out.png")["image_hash"], lit["image_hash"]);
-  EXPECT_EQ(report_of("render sky.json --tracer cpu --builder ploc -o out.png")["rays"]["shadow"],
-            lit["rays"]["shadow"]);
-  EXPECT_EQ(report_of("animate sky.json --frames 1")["frame_hashes"][0], lit["image_hash"]);
-  EXPECT_TRUE(report_of("lockstep sky.json")["equal"]);
-  const json off = report_of("render sky.json --effects=-environment -o out.png");
-  EXPECT_EQ(off["image_hash"], report_of("render two_views.json -o out.png")["image_hash"]);
-  EXPECT_EQ(off["rays"]["shadow"], 0);
-  const json costs = report_of("effects sky.json")["effects"];
-  EXPECT_EQ(costs.back()["name"], "environment");
-  EXPECT_GT(costs.back()["bytes"], 512 * 513 * 16);
-  EXPECT_EQ(costs.back()["rays"], lit["rays"]["shadow"]);
-}
-
-TEST_F(CommandEffects, AnEnvironmentThatIsBrokenIsSaidAndOneThatIsMissingRefusedOrReplaced) {
-  write("broken.hdr", "#?RADIANCE");
-  const Outcome broken = run("render one.obj -o out.png --size 8x8 --environment broken.hdr");
-  EXPECT_EQ(broken.status, 0);
-  EXPECT_NE(broken.err.find("warning: broken.hdr: no Radiance HDR that can be read"), std::string::npos)
-      << broken.err;
-  fs::remove("out.png");
-  expect_refused("render one.obj -o out.png --environment gone.hdr", 1,
-                 "--environment: 'gone.hdr' is no file, expected an HDR image (.hdr, .exr) or sky");
-  write("bad.json", R"({ "objects": [], "environment": { "sky": {}, "image": "a.hdr" } })");
-  expect_refused("render bad.json -o out.png", 1,
-                 "bad.json: /environment: expected an \"image\" or a \"sky\", one of both");
-  write("gone.json", R"({
-    "meshes": { "two": { "file": "two.obj" } }, "objects": [ { "mesh": "two" } ],
-    "environment": { "image": "gone.hdr" } })");
-  const Outcome gone = run("render gone.json -o out.png --size 8x8");
-  EXPECT_EQ(gone.status, 0);
-  EXPECT_NE(gone.err.find("gone.hdr: no such file, a checker takes its place as /environment"),
-            std::string::npos)
-      << gone.err;
 }
 
 TEST_F(CommandEffects, AnimateAndLockstepTakeThem) {
