@@ -178,7 +178,7 @@ TEST(GltfAlpha, ModesMeanWhatTheySay) {
   const auto arrays_with = [](const nlohmann::json& material) {
     GltfText text = gltf_triangle();
     text.json["meshes"][0]["primitives"][0]["material"] = 0;
-    text.json["materials"] = {material};
+    text.json["materials"] = nlohmann::json::array({material});
     return arrays_of(read_gltf(text.embedded()));
   };
   const auto of_factor = [](float alpha) -> nlohmann::json {

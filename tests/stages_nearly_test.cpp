@@ -203,7 +203,7 @@ TEST(Nearly, OnlyStagesThatDivideOrTakeRootsAreNearlyEqual) {
                      name == "resolve" || name == "shade_pixels" || name == "show" || name == "shadow_rays" ||
                      name == "noise_sum" || name == "noise_marks" || name == "shade_lights" ||
                      name == "texture_hits" || name == "occlusion_rays" || name == "path_surfaces" ||
-                     name == "path_lights" || name == "path_bounce";
+                     name == "path_lights" || name == "path_bounce" || name == "path_fog";
     EXPECT_EQ(!stage->nearly.empty(), may) << name;
   }
 }
