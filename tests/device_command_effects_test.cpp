@@ -300,8 +300,8 @@ TEST_F(CommandEffects, InstancesAreFlattenedOrRefusedByOneLine) {
 }
 
 TEST_F(CommandEffects, WhatCannotBeIsRefusedByOneLine) {
-  expect_refused("render one.obj -o out.png --effects +fog", 2,
-                 "--effects: '+fog' is no + or - and an effect behind it: there are lights, shadows");
+  expect_refused("render one.obj -o out.png --effects +mist", 2,
+                 "--effects: '+mist' is no + or - and an effect behind it: there are lights, shadows");
   expect_refused("render one.obj -o out.png --effects shadows", 2, "--effects: 'shadows' is no + or -");
   expect_refused("build one.obj --effects +shadows", 2, "--effects");
   expect_refused("render scene.json -o out.png --builder none", 1,

@@ -71,6 +71,8 @@ Found run_frame(Device& device, const Frame& frame, const Spoil& spoil) {
     scene.more_lights.push_back({.is_point = true, .place = {1, 3, 2}, .shadows = true, .origin = ""});
   }
   if (frame.refines) scene.lens.aperture = 0.1f;
+  if (frame.paths)
+    scene.fog = Fog{.density = 0.2f, .albedo = vec3(0.9f), .anisotropy = 0.2f, .box = {}, .origin = "/fog"};
   if (frame.lights) scene.occlusion = AmbientOcclusion{2};
   SceneArrays arrays = scene_arrays(scene, effects_of(scene));
   arrays.lighting = {};  // padding and all
