@@ -16,15 +16,13 @@ INTERFACE_BEGIN
 // 2^24, then a place uniform in the texel. So its density by solid angle is
 //   row share * column share * 2^-48 * side^2 / 4 * |p|^3.
 //
-// Of the array of this struct
-//   0                      radiance: ambient light; end: the side of the map, a power of two; 0: there is
-//   none, and nothing
-//                          else in the array
-//   1 + side * y + x       a texel: its radiance; the end of its share of the row, shares cumulated along the
-//   row 1 + side * side + y    a row: x of radiance is the probability that the environment is chosen among
-//   the lights, times
-//                          the row's share * 2^-48 * side^2 / 4; end: that of its share, cumulated
-// The ends of the last row, and of the last texel of each row that has a share, are 2^24.
+// Entry 0 of an array of this struct has as radiance the ambient light, and as end the side of the map, a
+// power of two; 0: there is none, and no other entry.
+//
+// Entry 1 + side * y + x is a texel: its radiance, and the end of its share of the row, shares cumulated
+// along the row. Entry 1 + side * side + y is a row: the end of its share, cumulated, and as x of radiance
+// the probability that the environment is chosen among the lights, times the row's share * 2^-48 * side^2 /
+// 4. The ends of the last row, and of the last texel of each row that has a share, are 2^24.
 struct Surrounding {
   vec3 radiance;
   uint end;
