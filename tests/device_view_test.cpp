@@ -52,11 +52,17 @@ TEST_F(ViewWindow, RefinesWhatStandsStillToWhatRenderMakesOfAsManySamples) {
   expect_line("refined to 37 samples, error 0.");
   expect_same_as_render(1);
   desktop_->xdotool("mousemove 60 60 mousedown 1 mousemove 70 65 mouseup 1");
-  EXPECT_TRUE(wait_until([&] { return shows_twice("refined to 37 samples"); })) << window_->out();
+  EXPECT_TRUE(wait_until([&] { return times_shown("refined to 37 samples") == 2; })) << window_->out();
   expect_same_as_render(2);
-  EXPECT_NE(pictures_[0], pictures_[1]);
+  EXPECT_TRUE(pictures_[0] != pictures_[1]);
   key("3");  // normals have no samples
   expect_same_as_render(3);
+  key("8");  // nor have boxes, which the kernels of colours show
+  expect_same_as_render(4);
+  key("1");
+  EXPECT_TRUE(wait_until([&] { return times_shown("refined to 37 samples") == 3; })) << window_->out();
+  expect_same_as_render(5);
+  EXPECT_TRUE(pictures_[4] == pictures_[1]);
   close();
 }
 

@@ -85,7 +85,7 @@ FramePlan ViewFrames::plan_all(ViewFrames& frames, CheckedDevice& device) {
 }
 
 std::optional<TracePlan> ViewFrames::plan_passes(ViewFrames& frames) {
-  const bool colours = frames.options_.show.show == Show::color;
+  const bool colours = kernel_view(frames.options_.show.show) == SHOW_COLOR;
   if (!frames.options_.refines || !colours) return {};
   return plan_refined(frames.layout_, frames.plan_.trace);
 }

@@ -70,7 +70,8 @@ class ViewFrames {
 
   // Another pass of so many samples a pixel over the scene as the last picture has it, of that picture's
   // film. Passes begin anew after each such picture, and are of a sequence, so that however they are cut the
-  // picture is that of as many samples. Only where the options ask for passes and colours are shown.
+  // picture is that of as many samples. Only where the options ask for passes and the kernels are those of
+  // colours.
   void submit_pass(const Film& film, std::uint32_t samples);
   bool can_refine() const { return refined_.has_value(); }
 

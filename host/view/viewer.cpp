@@ -216,7 +216,7 @@ void Viewer::submit_picture() {
 // knows how far they are apart.
 std::uint32_t Viewer::samples_of_next_pass() const {
   constexpr double seconds_of_pass = 0.05;
-  if (!frames_ || !frames_->can_refine()) return 0;
+  if (!frames_ || !frames_->can_refine() || asked_.show.show != Show::color) return 0;
   const ViewedFrame& last = statistics_.last;
   const RefineLimits& limits = run_.refine;
   if (last.samples >= limits.most_samples || is_refined(last)) return 0;

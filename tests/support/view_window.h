@@ -72,9 +72,12 @@ class ViewWindow : public Command {
   }
 
   bool shows(const std::string& text) const { return window_->out().find(text) != std::string::npos; }
-  bool shows_twice(const std::string& text) const {
-    const std::size_t first = window_->out().find(text);
-    return first != std::string::npos && window_->out().find(text, first + 1) != std::string::npos;
+  // How often.
+  int times_shown(const std::string& text) const {
+    const std::string out = window_->out();
+    int times = 0;
+    for (std::size_t at = out.find(text); at != std::string::npos; at = out.find(text, at + 1)) ++times;
+    return times;
   }
   void expect_line(const std::string& text) {
     EXPECT_TRUE(wait_until([&] { return shows(text) || window_->has_ended(); }));
