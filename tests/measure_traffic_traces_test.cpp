@@ -103,76 +103,69 @@ TEST(Traffic, OfAmbientOcclusion) {
   EXPECT_EQ(bytes["shade_ambient"], 1000u * 4 + 250 * 8 + 200 * 56);
 }
 
-// 1,000 rays, of which 250 hit something.
-TEST(Traffic, OfTextures) {
+// By stage, of a picture of 1,000 rays, of which 250 hit something.
+std::map<std::string, std::uint64_t> bytes_of_picture(TraceOptions options,
+                                                      const RunCounts::Secondary& shadow = {}) {
+  options.width = 40;
+  options.height = 25;
   Layout layout;
   const TreeSlots tree = plan_tree(layout, 100, 199);
-  const TracePlan plan =
-      plan_trace(layout, tree, 1, {.width = 40, .height = 25, .textures = {.textures = 1, .texels = 64}});
+  const TracePlan plan = plan_trace(layout, tree, 1, options);
   Chain chain(nowhere);
   append_trace(chain, tree, plan);
   RunCounts counts;
-  counts.rays = 1000, counts.hits = 250, counts.steps = 4000;
-  std::uint64_t bytes = 0;
+  counts.rays = 1000, counts.hits = 250, counts.steps = 6400;
+  counts.shadow = shadow;
+  std::map<std::string, std::uint64_t> bytes;
   for (const Step& step : chain.steps()) {
-    if (stage_of(step) && stage_of(step)->name == std::string_view("texture_hits"))
-      bytes += modelled_bytes(step, counts);
+    if (stage_of(step)) bytes[stage_of(step)->name] += modelled_bytes(step, counts);
   }
-  // Of a hit: the rest of it 12, direction 12, triangle 36, material 4 + 36 + 8, header 48, texels 32,
-  // corners 64, and what is written 24.
-  EXPECT_EQ(bytes, 1000u * 4 + 250 * 276);
+  return bytes;
 }
 
-// 1,000 rays, of which 250 hit something; an environment is met by the others.
+TEST(Traffic, OfTextures) {
+  auto bytes = bytes_of_picture({.textures = {.textures = 1, .texels = 64}});
+  // Of a hit: the rest of it 12, direction 12, triangle 36, material 4 + 36 + 8, header 48, texels 32,
+  // corners 64, and what is written 24.
+  EXPECT_EQ(bytes["texture_hits"], 1000u * 4 + 250 * 276);
+}
+
+// It is met by the rays that hit nothing.
 TEST(Traffic, OfEnvironments) {
   const auto bytes_of = [](std::uint32_t side) {
-    Layout layout;
-    const TreeSlots tree = plan_tree(layout, 100, 199);
-    const TracePlan plan = plan_trace(
-        layout, tree, 1,
-        {.width = 40, .height = 25, .paths = {.follows = true, .choices = 1, .environment_side = side}});
-    Chain chain(nowhere);
-    append_trace(chain, tree, plan);
-    RunCounts counts;
-    counts.rays = 1000, counts.hits = 250, counts.steps = 4000;
-    std::uint64_t bytes = 0;
-    for (const Step& step : chain.steps()) {
-      if (stage_of(step) && stage_of(step)->name == std::string_view("path_surfaces"))
-        bytes += modelled_bytes(step, counts);
-    }
-    return bytes;
+    return bytes_of_picture(
+        {.paths = {.follows = true, .choices = 1, .environment_side = side}})["path_surfaces"];
   };
   EXPECT_EQ(bytes_of(0), 1000u * 84 + 250 * 164);
   EXPECT_EQ(bytes_of(16), 1000u * 84 + 250 * 164 + 750 * 112);
 }
 
+// Rays to lights are as many, from surfaces and from fog together.
+TEST(Traffic, OfFog) {
+  const auto bytes_of = [](bool fog) {
+    const std::uint64_t could_be = fog ? 2000 : 1000;
+    return bytes_of_picture({.paths = {.follows = true, .choices = 1, .shadows = true, .fog = fog}},
+                            {could_be, 600, 200, 3000});
+  };
+  auto fog = bytes_of(true), clear = bytes_of(false);
+  EXPECT_EQ(fog["path_fog"], 1000u * 4 + 1000 * 40);
+  EXPECT_FALSE(clear.contains("path_fog"));
+  EXPECT_EQ(clear["path_light_add"], 1000u * 4 + 600 * 8 + 400 * 40);
+  EXPECT_EQ(fog["path_light_add"], clear["path_light_add"] + 1000 * 4) << "twice through the queue";
+  EXPECT_EQ(clear["path_lights"] - fog["path_lights"], 300u * 44) << "half of them";
+}
+
 // The same as without, and of each hit the word of its triangle.
 TEST(Traffic, OfAlpha) {
-  const auto bytes_of = [](AlphaCounts alpha, std::uint32_t shadows, Walk walk) {
-    Layout layout;
-    const TreeSlots tree = plan_tree(layout, 100, 199);
-    const TracePlan plan = plan_trace(layout, tree, 1,
-                                      {.width = 40,
-                                       .height = 25,
-                                       .walk = walk,
-                                       .lights = {.lights = 1, .shadows = shadows},
-                                       .alpha = alpha});
-    Chain chain(nowhere);
-    append_trace(chain, tree, plan);
-    RunCounts counts;
-    counts.rays = 1000, counts.hits = 250, counts.steps = 6400;
-    if (shadows > 0) counts.shadow = {1000, 200, 40, 3000};
-    std::map<std::string, std::uint64_t> bytes;
-    for (const Step& step : chain.steps()) {
-      if (stage_of(step)) bytes[stage_of(step)->name] += modelled_bytes(step, counts);
-    }
-    return bytes;
+  const auto bytes_of = [](AlphaCounts alpha, Walk walk) {
+    return bytes_of_picture({.walk = walk, .lights = {.lights = 1, .shadows = 1}, .alpha = alpha},
+                            {1000, 200, 40, 3000});
   };
   for (const auto& [walk, closest, any] :
        {std::tuple{Walk::binary, "trace_closest", "trace_any"},
         std::tuple{Walk::wide_packets, "trace_wide", "trace_wide_any"},
         std::tuple{Walk::wide_single, "trace_wide_single", "trace_wide_any"}}) {
-    auto with = bytes_of({1, 16}, 1, walk), without = bytes_of({}, 1, walk);
+    auto with = bytes_of({1, 16}, walk), without = bytes_of({}, walk);
     EXPECT_EQ(with[closest + std::string("_alpha")], without[closest] + 250 * 4);
     EXPECT_EQ(with[any + std::string("_alpha")], without[any] + 40 * 4);
     EXPECT_FALSE(with.contains(closest) || with.contains(any));

@@ -1,5 +1,6 @@
 #include "interface/paths.h"
 #include "stages/stages.h"
+#include "stages/traffic_shares.h"
 
 namespace coppice::traffic {
 
@@ -10,13 +11,6 @@ Bytes path_share(Bytes sum, Bytes rays, const RunCounts& counts) {
   const Bytes all = counts.paths.could_be + counts.rays;
   if (all == 0) return 0;
   return static_cast<Bytes>(static_cast<double>(sum) * static_cast<double>(rays) / static_cast<double>(all));
-}
-
-// Of light rays the part of a step that has some.
-Bytes light_share(Bytes sum, Bytes rays, const RunCounts& counts) {
-  if (counts.shadow.could_be == 0) return 0;
-  return static_cast<Bytes>(static_cast<double>(sum) * static_cast<double>(rays) /
-                            static_cast<double>(counts.shadow.could_be));
 }
 
 Bytes queued(const RunCounts& counts) { return counts.rays + counts.paths.rays; }
@@ -51,13 +45,13 @@ Bytes path_lights(const PathLightsArgs& a, const RunCounts& counts) {
   return Bytes{a.ray_count} * 4 + path_share(queued(counts), a.ray_count, counts) * sizeof(Hit) +
          path_share(met(counts), a.ray_count, counts) * (sizeof(Path) + sizeof(vec3) + 2 * sizeof(Triangle) +
                                                          sizeof(SurfacePoint) + sizeof(LightChoice)) +
-         light_share(counts.shadow.rays, a.ray_count, counts) * (sizeof(Ray) + sizeof(vec3));
+         shadow_share(counts.shadow.rays, a.ray_count, counts) * (sizeof(Ray) + sizeof(vec3));
 }
 
 Bytes path_light_add(const PathLightAddArgs& a, const RunCounts& counts) {
   return path_share(queued(counts), a.ray_count, counts) * 4 +
-         light_share(counts.shadow.rays, a.ray_count, counts) * 8 +
-         light_share(counts.shadow.rays - counts.shadow.hits, a.ray_count, counts) * (4 + 3 * sizeof(vec3));
+         shadow_share(counts.shadow.rays, a.ray_count, counts) * 8 +
+         shadow_share(counts.shadow.rays - counts.shadow.hits, a.ray_count, counts) * (4 + 3 * sizeof(vec3));
 }
 
 Bytes path_bounce(const PathBounceArgs& a, const RunCounts& counts) {
@@ -70,7 +64,7 @@ Bytes path_bounce(const PathBounceArgs& a, const RunCounts& counts) {
 Bytes path_queue(const PathQueueArgs& a, const RunCounts& counts) {
   const bool paths = a.marked_paths.value != 0;
   return Bytes{a.ray_count} * 8 + (paths ? path_share(counts.paths.rays, a.ray_count, counts)
-                                         : light_share(counts.shadow.rays, a.ray_count, counts)) *
+                                         : shadow_share(counts.shadow.rays, a.ray_count, counts)) *
                                       (2 * sizeof(Ray) + (paths ? 2 * sizeof(Path) + sizeof(Hit) : 0));
 }
 

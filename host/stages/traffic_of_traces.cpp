@@ -2,6 +2,7 @@
 
 #include "stages/divide_up.h"
 #include "stages/stages.h"
+#include "stages/traffic_shares.h"
 
 // What the stages of traces and pictures move at least: "cost" in docs/kernels.md.
 namespace coppice::traffic {
@@ -48,17 +49,6 @@ Bytes pairs_of(const RunCounts& counts) { return counts.steps * 2 * sizeof(Node)
 Bytes wide_nodes_of(const RunCounts& counts) { return counts.steps * sizeof(WideNode); }
 Bytes triangles_of(const RunCounts& counts) { return counts.hits * sizeof(Triangle); }
 Bytes alpha_triangles_of(const RunCounts& counts) { return counts.hits * alpha_triangle; }
-
-// Of shadow or occlusion rays, the part of those that `rays` rays of the picture have for one light.
-Bytes part_of(const RunCounts::Secondary& secondary, Bytes sum, Bytes rays) {
-  if (secondary.could_be == 0) return 0;
-  return static_cast<Bytes>(static_cast<double>(sum) * static_cast<double>(rays) /
-                            static_cast<double>(secondary.could_be));
-}
-
-Bytes shadow_share(Bytes sum, Bytes rays, const RunCounts& counts) {
-  return part_of(counts.shadow, sum, rays);
-}
 
 Bytes occlusion_share(Bytes sum, Bytes rays, const RunCounts& counts) {
   return part_of(counts.occlusion, sum, rays);
