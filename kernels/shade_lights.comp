@@ -5,6 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "interface/lights.h"
 #include "lib/exact_vector.glsl"
+#include "lib/length.glsl"
 #include "lib/light_source.glsl"
 #include "lib/ray_words.glsl"
 
@@ -14,16 +15,6 @@ layout(constant_id = 0) const uint SHADE_SHADOWS = 1u;
 layout(constant_id = 1) const uint SHADE_POINTS = 1u;
 
 #include "lib/material_of.glsl"
-
-// As scaled by its largest component, so that squares stay in range.
-float length_of(vec3 v) {
-  vec3 size = abs(v);
-  float largest = max(max(size.x, size.y), size.z);
-  if (largest == 0.0) return 0.0;
-  precise vec3 scaled = v / largest;
-  precise float length = largest * sqrt(exact_dot(scaled, scaled));
-  return length;
-}
 
 vec3 reflected(vec3 diffuse, LightSource light, vec3 point, vec3 normal) {
   precise vec3 colour = diffuse * light.radiance;

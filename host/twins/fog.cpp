@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "twins/exponential.h"
-#include "twins/light_sample.h"
+#include "twins/vectors.h"
 
 namespace coppice::twins {
 
@@ -32,7 +32,7 @@ FogReach reach_of_fog(const Fog& fog, const Ray& ray) {
 
 float optical_depth(const Fog& fog, const vec3& direction, const FogReach& reach) {
   if (!(reach.leaves > reach.enters)) return 0;
-  return fog.density * ((reach.leaves - reach.enters) * distance_along(direction));
+  return fog.density * ((reach.leaves - reach.enters) * length_of(direction));
 }
 
 float transmittance_of(const Fog& fog, const Ray& ray) {

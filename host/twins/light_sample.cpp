@@ -19,7 +19,7 @@ std::optional<SampledLight> sample_listed(const LightSource& light, const vec3& 
   const vec3 radiance = light.radiance * PI_FLOAT / probability;
   if (light.kind != LIGHT_POINT)
     return SampledLight{direction, std::numeric_limits<float>::infinity(), radiance, 0};
-  const float distance = distance_along(direction);
+  const float distance = length_of(direction);
   if (distance == 0) return std::nullopt;
   const float nearness = light.distance / distance;
   return SampledLight{direction, 1, radiance * (nearness * nearness), 0};
@@ -34,7 +34,7 @@ std::optional<SampledLight> sample_emitter(const LightTables& tables, const Ligh
   const vec3 normal = unit_normal(triangle);
   const bool from_behind = dot_product(normal, hit_point(triangle, place) - origin) > 0;
   const vec3 direction = leave_surface(triangle, place, from_behind ? -normal : normal) - origin;
-  const float distance = distance_along(direction);
+  const float distance = length_of(direction);
   const float cosine = std::fabs(dot_product(normal, unit_vector(direction)));
   const float area = 0.5f * twice_area(triangle);
   if (!(distance > 0) || !(cosine > 0) || !(area > 0)) return std::nullopt;
@@ -52,13 +52,6 @@ std::optional<SampledLight> sample_environment_light(const LightTables& tables, 
 }
 
 }  // namespace
-
-float distance_along(const vec3& v) {
-  const float largest = std::fmax(std::fmax(std::fabs(v.x), std::fabs(v.y)), std::fabs(v.z));
-  if (largest == 0) return 0;
-  const vec3 scaled(v.x / largest, v.y / largest, v.z / largest);
-  return largest * std::sqrt(dot_product(scaled, scaled));
-}
 
 const LightChoice& choice_for(const LightTables& tables, float u) {
   const auto at = static_cast<uint>(u * static_cast<float>(LIGHT_CHOICE_RANGE));

@@ -35,7 +35,4 @@ const LightChoice& choice_for(const LightTables& tables, float u);
 std::optional<SampledLight> sample_choice(const LightTables& tables, const LightChoice& choice,
                                           const vec3& origin, const glm::vec2& u, const glm::vec2& in_texel);
 
-// The length of a vector, however large or small.
-float distance_along(const vec3& v);
-
 }  // namespace coppice::twins

@@ -9,13 +9,6 @@ namespace coppice::twins {
 
 namespace {
 
-float length_of(const vec3& v) {
-  const float largest = std::fmax(std::fmax(std::fabs(v.x), std::fabs(v.y)), std::fabs(v.z));
-  if (largest == 0) return 0;
-  const vec3 scaled(v.x / largest, v.y / largest, v.z / largest);
-  return largest * std::sqrt(dot_product(scaled, scaled));
-}
-
 vec3 reflected_light(const vec3& diffuse, const LightSource& light, const vec3& point, const vec3& normal) {
   const vec3 colour = diffuse * light.radiance;
   const vec3 to_light = light_direction(light, point);

@@ -7,6 +7,9 @@ namespace coppice::twins {
 float dot_product(const vec3& a, const vec3& b);
 vec3 cross_product(const vec3& a, const vec3& b);
 
+// However large or small its components are.
+float length_of(const vec3& v);
+
 // Zero for a zero vector.
 vec3 unit_vector(const vec3& v);
 
