@@ -5,16 +5,11 @@
 #include <filesystem>
 #include <glm/geometric.hpp>
 
-#include "render/film.h"
-#include "render/frame.h"
 #include "scene/write_exr.h"
-#include "stages/gpu_executor.h"
-#include "stages/lockstep_executor.h"
 #include "support/environment_images.h"
+#include "support/path_frame.h"
 #include "support/path_scene.h"
-#include "support/test_device.h"
 #include "support/textured_scene.h"
-#include "support/traced_frame.h"
 
 namespace coppice {
 namespace {
@@ -59,42 +54,16 @@ SceneArrays arrays_of(const Scene& scene, const LitView& view) {
   return arrays;
 }
 
-FrameOptions options_of(const LitView& view) {
-  FrameOptions options{.build = BuildOptions{}, .trace = test_trace_options(view.width, view.height)};
-  options.trace.walk = view.walk;
-  options.trace.samples = view.samples;
-  options.trace.keep_radiance = true;
-  return options;
+PathView view_of(const LitView& view) {
+  return {view.width, view.height, view.samples, view.walk, view.changes, view.work};
 }
 
 std::vector<vec3> picture_of(const Scene& scene, const LitView& view) {
-  const SceneArrays arrays = arrays_of(scene, view);
-  Layout layout(test_device().properties().max_block_bytes);
-  const FramePlan plan = plan_frame(layout, arrays, options_of(view));
-  GpuExecutor executor(test_device(), layout);
-  upload_frame(executor, plan, arrays, make_film(scene, {}, view.width, view.height, view.samples));
-  trace_frame_in_pieces(executor, plan, view.work);
-  std::vector<vec3> radiance = executor.read(plan.trace.radiance);
-  for (vec3& r : radiance) r /= static_cast<float>(view.samples);
-  return radiance;
+  return path_picture(scene, arrays_of(scene, view), view_of(view)).radiance;
 }
 
-glm::dvec3 mean_of(const std::vector<vec3>& radiance) {
-  glm::dvec3 sum(0);
-  for (const vec3& r : radiance) sum += glm::dvec3(r);
-  return sum / static_cast<double>(radiance.size());
-}
-
-// Empty where there is none.
-std::string difference_of(const Scene& scene, const LitView& view) {
-  const SceneArrays arrays = arrays_of(scene, view);
-  Layout layout(test_device().properties().max_block_bytes);
-  const FramePlan plan = plan_frame(layout, arrays, options_of(view));
-  LockstepExecutor executor(test_device(), layout);
-  upload_frame(executor, plan, arrays, make_film(scene, {}, view.width, view.height, view.samples));
-  const auto difference = executor.run([&](Chain& chain) { append_frame(chain, plan); });
-  if (!difference) return "";
-  return difference->stage + " " + difference->slot + " " + std::to_string(difference->index);
+std::string lockstep_difference(const Scene& scene, const LitView& view) {
+  return difference_of(scene, arrays_of(scene, view), view_of(view));
 }
 
 // A plane that fills the picture.
@@ -126,16 +95,16 @@ TEST_F(DeviceEnvironment, EveryStageDoesWhatItsTwinDoes) {
   Scene scene = open_room();
   set_environment(scene, spotted_sky());
   for (const Walk walk : {Walk::binary, Walk::wide_single, Walk::wide_packets}) {
-    EXPECT_EQ(difference_of(scene, {.width = 24, .height = 18, .samples = 2, .walk = walk}), "");
+    EXPECT_EQ(lockstep_difference(scene, {.width = 24, .height = 18, .samples = 2, .walk = walk}), "");
   }
-  EXPECT_EQ(difference_of(scene, {.width = 24, .height = 18, .changes = "-shadows,-emission"}), "");
-  EXPECT_EQ(difference_of(scene, {.width = 24, .height = 18, .bounces_alone = true}), "");
+  EXPECT_EQ(lockstep_difference(scene, {.width = 24, .height = 18, .changes = "-shadows,-emission"}), "");
+  EXPECT_EQ(lockstep_difference(scene, {.width = 24, .height = 18, .bounces_alone = true}), "");
 }
 
 TEST_F(DeviceEnvironment, EveryStageDoesWhatItsTwinDoesUnderASkyWithTextures) {
   Scene scene = textured_scene(100);
   scene.environment = Environment{.image = "", .folder = "", .sky = Sky{}, .origin = "/environment"};
-  EXPECT_EQ(difference_of(scene, {.width = 24, .height = 18}), "");
+  EXPECT_EQ(lockstep_difference(scene, {.width = 24, .height = 18}), "");
 }
 
 TEST_F(DeviceEnvironment, TheSameBitsHoweverATraceIsCut) {
@@ -159,8 +128,8 @@ TEST_F(DeviceEnvironment, UnderAnEvenSkyASurfaceIsAsBrightAsItsAlbedo) {
     scene.global_illumination = bounces;
     for (const bool alone : {false, true}) {
       if (alone && !bounces) continue;
-      const glm::dvec3 seen =
-          mean_of(picture_of(scene, {.width = 8, .height = 8, .samples = 256, .bounces_alone = alone}));
+      const glm::dvec3 seen = mean_radiance_of(
+          picture_of(scene, {.width = 8, .height = 8, .samples = 256, .bounces_alone = alone}));
       EXPECT_NEAR(seen.x, 0.5, 0.0025) << bounces << alone;
       EXPECT_NEAR(seen.y, 1, 0.005) << bounces << alone;
       EXPECT_NEAR(seen.z, 2, 0.01) << bounces << alone;
@@ -173,11 +142,11 @@ TEST_F(DeviceEnvironment, ALightSpotLightsAsMuchByEachStrategyAsByBothAndAsTheIm
   const RadianceImage sky = spotted_sky();
   set_environment(scene, sky);
   const glm::dvec3 wanted = 0.8 / pi * irradiance_from_above(sky);
-  const glm::dvec3 lights = mean_of(picture_of(scene, {.samples = 1024}));
+  const glm::dvec3 lights = mean_radiance_of(picture_of(scene, {.samples = 1024}));
   scene.global_illumination = true;
-  const glm::dvec3 both = mean_of(picture_of(scene, {.samples = 1024}));
+  const glm::dvec3 both = mean_radiance_of(picture_of(scene, {.samples = 1024}));
   const glm::dvec3 bounces =
-      mean_of(picture_of(scene, {.width = 8, .height = 8, .samples = 4096, .bounces_alone = true}));
+      mean_radiance_of(picture_of(scene, {.width = 8, .height = 8, .samples = 4096, .bounces_alone = true}));
   for (int channel = 0; channel < 3; ++channel) {
     EXPECT_NEAR(lights[channel], wanted[channel], 0.01 * wanted[channel]);
     EXPECT_NEAR(both[channel], wanted[channel], 0.01 * wanted[channel]);
@@ -192,9 +161,10 @@ TEST_F(DeviceEnvironment, AGlossyMetalIsAsBrightWithLightSamplesAsWithout) {
   RadianceImage sky = even_image(vec3(0.2f));
   add_spot(sky, glm::normalize(glm::dvec3(0.2, 4, -3)), vec3(60));
   set_environment(scene, sky);
-  const double both = mean_of(picture_of(scene, {.samples = 1024})).x;
+  const double both = mean_radiance_of(picture_of(scene, {.samples = 1024})).x;
   const double alone =
-      mean_of(picture_of(scene, {.width = 8, .height = 8, .samples = 4096, .bounces_alone = true})).x;
+      mean_radiance_of(picture_of(scene, {.width = 8, .height = 8, .samples = 4096, .bounces_alone = true}))
+          .x;
   EXPECT_GT(alone, 0.5);
   EXPECT_NEAR(both, alone, 0.02 * alone);
 }
@@ -209,7 +179,7 @@ TEST_F(DeviceEnvironment, IsTheBackgroundAndIsSeenWhereTheImageHasIt) {
   const auto ahead = [&](vec3 direction) {
     scene.camera =
         Camera{.position = {0, 0, 0}, .target = direction, .up = {0, 1, 0}, .vertical_fov_degrees = 2};
-    return mean_of(picture_of(scene, {}));
+    return mean_radiance_of(picture_of(scene, {}));
   };
   EXPECT_NEAR(glm::distance(ahead({1, 0, 0}), glm::dvec3(3, 0, 0)), 0, 0.05);
   EXPECT_NEAR(glm::distance(ahead({0, 0, -1}), glm::dvec3(0, 2, 0)), 0, 0.05);
@@ -227,7 +197,7 @@ TEST_F(DeviceEnvironment, AMirrorShowsIt) {
   scene.materials[0].metallic = 1;
   scene.materials[0].roughness = 0.0f;
   set_environment(scene, even_image({0.5f, 1, 2}));
-  const glm::dvec3 seen = mean_of(picture_of(scene, {.samples = 4}));
+  const glm::dvec3 seen = mean_radiance_of(picture_of(scene, {.samples = 4}));
   EXPECT_NEAR(glm::distance(seen, glm::dvec3(0.5, 1, 2)), 0, 1e-4);
 }
 
@@ -242,9 +212,10 @@ TEST_F(DeviceEnvironment, AHalfCoveredSpotIsHalfAsBrightAndACoveredOneDark) {
     add_surface(scene, {from, 1, -5}, {10, 0, 0}, {0, 0, 10}, add_material(scene, vec3(0)));
     scene.camera = Camera{.position = {-0.5f, 0.2f, 0}, .target = {0, 0, 0}, .vertical_fov_degrees = 0.25f};
     set_environment(scene, sky);
-    const double seen = mean_of(picture_of(scene, {.samples = 1024})).x;
+    const double seen = mean_radiance_of(picture_of(scene, {.samples = 1024})).x;
     EXPECT_NEAR(seen, (1 - covered) * open, 0.01 * open) << covered;
-    EXPECT_NEAR(mean_of(picture_of(scene, {.samples = 256, .changes = "-shadows"})).x, open, 0.02 * open);
+    EXPECT_NEAR(mean_radiance_of(picture_of(scene, {.samples = 256, .changes = "-shadows"})).x, open,
+                0.02 * open);
   }
 }
 
@@ -262,7 +233,7 @@ TEST_F(DeviceEnvironment, WhereItIsOffAllIsAsWithout) {
 TEST_F(DeviceEnvironment, ABlackOneIsNight) {
   Scene scene = plane_from_above(vec3(0.5f));
   set_environment(scene, even_image(vec3(0)));
-  EXPECT_EQ(mean_of(picture_of(scene, {})), glm::dvec3(0));
+  EXPECT_EQ(mean_radiance_of(picture_of(scene, {})), glm::dvec3(0));
 }
 
 }  // namespace

@@ -43,8 +43,7 @@ struct PathPicture {
   PathCounters lobes{};
 };
 
-inline PathPicture path_picture(const Scene& scene, const PathView& view) {
-  const SceneArrays arrays = dark_arrays(scene, view);
+inline PathPicture path_picture(const Scene& scene, const SceneArrays& arrays, const PathView& view) {
   Layout layout(test_device().properties().max_block_bytes);
   const FramePlan plan = plan_frame(layout, arrays, path_options(view));
   GpuExecutor executor(test_device(), layout);
@@ -58,6 +57,10 @@ inline PathPicture path_picture(const Scene& scene, const PathView& view) {
   return pictured;
 }
 
+inline PathPicture path_picture(const Scene& scene, const PathView& view) {
+  return path_picture(scene, dark_arrays(scene, view), view);
+}
+
 inline glm::dvec3 mean_radiance_of(const std::vector<vec3>& radiance) {
   glm::dvec3 sum(0);
   for (const vec3& r : radiance) sum += glm::dvec3(r.x, r.y, r.z);
@@ -65,8 +68,7 @@ inline glm::dvec3 mean_radiance_of(const std::vector<vec3>& radiance) {
 }
 
 // Empty where there is none.
-inline std::string difference_of(const Scene& scene, const PathView& view) {
-  const SceneArrays arrays = dark_arrays(scene, view);
+inline std::string difference_of(const Scene& scene, const SceneArrays& arrays, const PathView& view) {
   Layout layout(test_device().properties().max_block_bytes);
   const FramePlan plan = plan_frame(layout, arrays, path_options(view));
   LockstepExecutor executor(test_device(), layout);
@@ -74,6 +76,10 @@ inline std::string difference_of(const Scene& scene, const PathView& view) {
   const auto difference = executor.run([&](Chain& chain) { append_frame(chain, plan); });
   if (!difference) return "";
   return difference->stage + " " + difference->slot + " " + std::to_string(difference->index);
+}
+
+inline std::string difference_of(const Scene& scene, const PathView& view) {
+  return difference_of(scene, dark_arrays(scene, view), view);
 }
 
 }  // namespace coppice
